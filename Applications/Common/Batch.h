@@ -77,9 +77,8 @@ struct EarlierRun {
     std::string why{};       ///< why to run again; empty: the result would be the same
 };
 
-/// \param trustsTimes  don't read files of the recorded sizes and times
 EarlierRun findEarlierRun(const BatchProgram& program, const PlannedRun& run,
-                          const std::filesystem::path& folder, bool trustsTimes);
+                          const std::filesystem::path& folder);
 
 /// Settings and callbacks of runRuns().
 struct BatchRunning {

@@ -232,7 +232,7 @@ bool isSameContent(const RecordedFile& a, const RecordedFile& b) {
     return a.files == b.files && a.bytes == b.bytes && a.sha256 == b.sha256;
 }
 
-std::string changeOf(const RecordedFile& recorded, const fs::path& path, bool trustsTimes) {
+std::string changeOf(const RecordedFile& recorded, const fs::path& path) {
     std::error_code error;
     if (!fs::exists(path, error)) return "is gone";
     try {
@@ -240,8 +240,8 @@ std::string changeOf(const RecordedFile& recorded, const fs::path& path, bool tr
         addTimes(now, path);
         const bool hasTimes =
             now.modifiedNs == recorded.modifiedNs && now.changedNs == recorded.changedNs;
-        const bool isSame = now.bytes == recorded.bytes &&
-                            ((trustsTimes && hasTimes) || sha256OfFile(path) == recorded.sha256);
+        const bool isSame =
+            now.bytes == recorded.bytes && (hasTimes || sha256OfFile(path) == recorded.sha256);
         return isSame ? "" : "has changed";
     } catch (const FileError&) {
         return "has changed";  // can't be read

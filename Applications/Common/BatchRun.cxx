@@ -178,7 +178,7 @@ private:
     void runAll() {
         std::vector<std::size_t> waiting;
         for (std::size_t n = 0; n < runs_.size(); ++n) {
-            if (!takeEarlier(n, false)) waiting.push_back(n);
+            if (!takeEarlier(n, true)) waiting.push_back(n);
         }
         for (const std::size_t n : waiting) announce(n);
         writePage();
@@ -197,10 +197,11 @@ private:
     }
 
     /// With --skip-existing, takes the result of an earlier run, or of another batch meanwhile.
-    bool takeEarlier(std::size_t n, bool trustsTimes) {
+    /// \param isFirst  its record does not say yet that it is running
+    bool takeEarlier(std::size_t n, bool isFirst = false) {
         if (!batch_.skipsExisting || !runs_[n].item.fault.empty()) return false;
-        EarlierRun earlier = findEarlierRun(program_, runs_[n], running_.folder, trustsTimes);
-        if (!trustsTimes) {  // the first look, before its record says that it is running
+        EarlierRun earlier = findEarlierRun(program_, runs_[n], running_.folder);
+        if (isFirst) {
             reasons_[n] = earlier.isThere ? earlier.why : "";
             areCurrent_[n] = earlier.isCurrent;
         }
@@ -248,8 +249,7 @@ private:
     std::vector<std::string> start(std::size_t n) {
         const PlannedRun& run = runs_[n];
         if (ended_[n]) return {};
-        constexpr bool kTrustsTimes = true;
-        if (takeEarlier(n, kTrustsTimes)) {
+        if (takeEarlier(n)) {
             printNext();
             return {};
         }
@@ -267,7 +267,7 @@ private:
         for (const RecordedFile& output : former.recordedOutputs) {
             const fs::path path = run.item.folder / output.file;
             std::error_code error;
-            if (!changeOf(output, path, false).empty()) continue;
+            if (!changeOf(output, path).empty()) continue;
             fs::remove(path, error);
             for (fs::path folder = path.parent_path(); folder != run.item.folder && !error;
                  folder = folder.parent_path()) {
@@ -284,8 +284,7 @@ private:
         addResult(result, run.item.inputs, record);
         if (result.signal != 0) detail::removeLeftTemporaries(folder, result.process);
         // of two batches in one folder the slower may fail where the other has finished
-        constexpr bool kTrustsTimes = true;
-        if (record.isFinished() || !takeEarlier(n, kTrustsTimes)) {
+        if (record.isFinished() || !takeEarlier(n)) {
             addFiles(n, record);
             if (keepsRecords_) writeRecord(run.record, record);
             ended_[n] = std::move(record);
@@ -422,9 +421,8 @@ std::string differenceOf(const std::vector<RecordedOption>& before,
     return is == now.end() ? "" : "another " + is->name + " was given";
 }
 
-std::string changeOfInputs(const PlannedRun& run, const RunRecord& record, const fs::path& folder,
-                           bool trustsTimes) {
-    bool areSame = trustsTimes && run.inputs.size() == record.inputs.size();
+std::string changeOfInputs(const PlannedRun& run, const RunRecord& record, const fs::path& folder) {
+    bool areSame = run.inputs.size() == record.inputs.size();
     for (std::size_t k = 0; areSame && k < run.inputs.size(); ++k) {
         areSame =
             !record.inputs[k].sha256.empty() && hasTimes(record.inputs[k], run.inputs[k], folder);
@@ -441,7 +439,7 @@ std::string changeOfInputs(const PlannedRun& run, const RunRecord& record, const
 }
 
 /// Compares surfaces and requested extras; other outputs are ignored.
-std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record, bool trustsTimes) {
+std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record) {
     for (const auto& [option, path] : run.extras) {
         const fs::path wanted = path.lexically_normal(), folder = wanted / "";
         const bool isRecorded = std::ranges::any_of(
@@ -459,7 +457,7 @@ std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record, bool
                 return extra.first == output.option;
             });
         const fs::path path = run.item.folder / output.file;
-        const std::string change = isAsked ? changeOf(output, path, trustsTimes) : "";
+        const std::string change = isAsked ? changeOf(output, path) : "";
         if (!change.empty()) return path.filename().string() + " " + change;
     }
     return {};
@@ -468,7 +466,7 @@ std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record, bool
 }  // namespace
 
 EarlierRun findEarlierRun(const BatchProgram& program, const PlannedRun& run,
-                          const fs::path& folder, bool trustsTimes) {
+                          const fs::path& folder) {
     EarlierRun earlier;
     earlier.fault = readRecord(run.record, earlier.record);
     const RunRecord& record = earlier.record;
@@ -494,9 +492,9 @@ EarlierRun findEarlierRun(const BatchProgram& program, const PlannedRun& run,
         earlier.why = "another version has made it";
     } else {
         earlier.why = differenceOf(record.options, run.options);
-        if (earlier.why.empty()) earlier.why = changeOfInputs(run, record, folder, trustsTimes);
+        if (earlier.why.empty()) earlier.why = changeOfInputs(run, record, folder);
         earlier.isCurrent = earlier.why.empty();
-        if (earlier.isCurrent) earlier.why = changeOfOutputs(run, record, trustsTimes);
+        if (earlier.isCurrent) earlier.why = changeOfOutputs(run, record);
     }
     return earlier;
 }

@@ -5,8 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -53,22 +51,13 @@ std::string anchor(const fs::path& target, const std::string& text, const fs::pa
     return "<a href=\"" + linkTo(target, page) + "\">" + escapedMarkup(text) + "</a>";
 }
 
-/// The first picture in a report ("data:image/png;base64,..."); may be empty.
-std::string firstPicture(const fs::path& report) {
-    std::ifstream file(report, std::ios::binary);
-    const std::string page{std::istreambuf_iterator<char>(file), {}};
-    const std::size_t begin = page.find("data:image/png;base64,");
-    if (begin == std::string::npos) return {};
-    return page.substr(begin, page.find('"', begin) - begin);
-}
-
 std::string pictureSource(const SummaryRow& row, const fs::path& page) {
     for (const std::string_view name : {"contours-axial.png", "surface-1.png"}) {
         if (!row.pictures.empty() && fs::exists(row.pictures / name)) {
             return linkTo(row.pictures / name, page);
         }
     }
-    return row.report.empty() ? "" : firstPicture(row.report);
+    return "";
 }
 
 std::string thumbnail(const SummaryRow& row, const fs::path& page) {
@@ -82,21 +71,10 @@ std::string thumbnail(const SummaryRow& row, const fs::path& page) {
 
 /// The mark and the words of a state.
 std::string_view stateText(RunState state) {
-    switch (state) {
-        case RunState::Failed:
-            return "&#10007;&nbsp;FAILED";
-        case RunState::Changed:
-            return "&#10007;&nbsp;MISSING or CHANGED";
-        case RunState::NotFinished:
-            return "&#10007;&nbsp;not finished";
-        case RunState::NotRun:
-            return "&#10007;&nbsp;not run";
-        case RunState::Unusual:
-            return "&#9888;&nbsp;done, unusual";
-        case RunState::Done:
-            return "&#10003;&nbsp;done";
-    }
-    return "";
+    constexpr const char* kWords[] = {
+        "&#10007;&nbsp;FAILED",  "&#10007;&nbsp;MISSING or CHANGED", "&#10007;&nbsp;not finished",
+        "&#10007;&nbsp;not run", "&#9888;&nbsp;done, unusual",       "&#10003;&nbsp;done"};
+    return kWords[static_cast<std::size_t>(state)];
 }
 
 bool hasRun(const SummaryRow& row) {
@@ -155,8 +133,7 @@ std::string verdictOf(const std::vector<SummaryRow>& rows) {
 std::string changesOf(const RunRecord& record, const fs::path& folder) {
     std::string changes;
     const auto add = [&](const RecordedFile& file, const fs::path& path, const char* since) {
-        constexpr bool kTrustsTimes = true;
-        std::string change = changeOf(file, path, kTrustsTimes);
+        std::string change = changeOf(file, path);
         if (change.empty()) return;
         if (change == "has changed") change += std::string(" since it was ") + since;
         changes += (changes.empty() ? "" : "; ") + path.filename().string() + " " + change;

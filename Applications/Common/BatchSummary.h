@@ -39,8 +39,7 @@ struct SummaryRow {
 SummaryRow summaryRow(const std::filesystem::path& file, const RunRecord& record);
 
 /// A page of HTML without scripts that lists `rows` in their order, the verdict in words and
-/// colour, with links relative to `page`, and a thumbnail where there is a picture: one of the
-/// row's pictures, or the first in its report.
+/// colour, with links relative to `page`, and a thumbnail where there are pictures.
 std::string summaryPage(const std::vector<SummaryRow>& rows, const std::filesystem::path& page);
 
 /// A line for every record in `folder`, with `own`, which replace those in their files: the worst

@@ -44,8 +44,7 @@ ChosenSubjects chooseSubjects(const BidsOptions& options);
 /// and writes the files of the whole dataset: quality.tsv and quality.json, summary.html,
 /// dataset_description.json, README and .bidsignore.
 /// \return kExitOk, or kExitCheckFailed: something is missing, failed or unsound; stderr names it
-/// \throws InvalidInput  no participant has been run; or a table exists that was made with options
-///                       which are neither these nor the participant level's
+/// \throws InvalidInput  no participant has been run
 int runGroup(BidsOptions options, const ChosenSubjects& chosen);
 
 /// "01" for the entity "sub" of "sub-01_ses-2_acq-hi"; may be empty.

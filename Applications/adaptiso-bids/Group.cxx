@@ -7,7 +7,6 @@
 
 #include "Common/BatchSummary.h"
 #include "Common/RunApp.h"
-#include "Common/Sha256.h"
 #include "Common/Verdict.h"
 #include "Dataset.h"
 #include "Jobs.h"
@@ -21,7 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "adaptiso-bids";
 constexpr const char* kDescription = "dataset_description.json";
-constexpr const char* kOptionsSum = "OptionsSha256";
 
 /// Files that BIDS does not define yet, for its validators.
 constexpr const char* kIgnored =
@@ -141,8 +139,7 @@ private:
                       "no " + job.needs);
         }
         for (const PlannedRun& run : job.runs) {
-            constexpr bool kTrustsTimes = true;
-            add(job, run, findEarlierRun(job.program, run, options_.output, kTrustsTimes));
+            add(job, run, findEarlierRun(job.program, run, options_.output));
         }
     }
 
@@ -231,9 +228,7 @@ private:
 
     void addChecks(const Job& job) {
         for (const PlannedRun& run : job.runs) {
-            constexpr bool kTrustsTimes = true;
-            const EarlierRun earlier =
-                findEarlierRun(job.program, run, options_.output, kTrustsTimes);
+            const EarlierRun earlier = findEarlierRun(job.program, run, options_.output);
             auto& [state, text] = checks_[run.item.inputs.front().lexically_normal()];
             if (!earlier.why.empty()) {
                 state = QualityState::Missing;
@@ -357,11 +352,6 @@ std::string wordsOf(const BidsOptions& options) {
     return words;
 }
 
-/// Identifies a table's options without storing them, as they may hold paths.
-std::string sumOf(const Json& asked) {
-    return sha256Of(asked.dump());
-}
-
 /// The first entry of GeneratedBy in the output's description; may be null.
 Json makerOf(const fs::path& output) {
     std::ifstream file(output / kDescription);
@@ -391,35 +381,18 @@ void requireOwnDataset(const fs::path& output) {
     }
 }
 
-/// Fills in the participant level's options where none are given, and protects a table that was
-/// made with others. \throws InvalidInput  there is one, and --force is not given
-void requireOwnOptions(BidsOptions& options) {
-    BidsOptions recorded = options;
-    recorded.wanted.clear();
-    takeAsked(recorded);
+/// Fills in the participant level's options where none are given. \throws UsageError
+void fillInOptions(BidsOptions& options) {
     if (!options.namesProducts()) {
         auto given = std::move(options.wanted);
-        options = recorded;
+        options.wanted.clear();
+        takeAsked(options);
         for (auto& [product, list] : given) options.wanted[product] = list;
     }
     if (!options.namesProducts()) options.wanted["surfaces"] = "iso=auto";  // an old version's
     if (options.makes("check") && !options.makes("surfaces")) {
         throw UsageError("--check: needs --surfaces");
     }
-    const Json asked = askedOf(options), known = askedOf(recorded);
-    const auto isKnown = [&](const Json& one) {
-        return std::find(known.begin(), known.end(), one) != known.end();
-    };
-    if (options.force || std::all_of(asked.begin(), asked.end(), isKnown)) return;
-    std::error_code error;
-    const Json maker = makerOf(options.output);
-    const std::string sum = maker.is_object() ? maker.value(kOptionsSum, "") : "";
-    const bool isTable = fs::exists(options.output / "quality.tsv", error);
-    if (!isTable || sum.empty() || sum == sumOf(asked)) return;
-    throw InvalidInput((options.output / "quality.tsv").string() +
-                       ": was made with other options than " + wordsOf(options) +
-                       "; leave them out to take the participant level's, or give --force to "
-                       "replace it");
 }
 
 // ---- what is written
@@ -450,7 +423,6 @@ Json descriptionOf(const BidsOptions& options) {
     };
     Json maker{{"Name", kProgram}, {"Version", programVersion()}};
     if (constexpr std::string_view home = ADAPTISO_HOMEPAGE; !home.empty()) maker["CodeURL"] = home;
-    maker[kOptionsSum] = sumOf(askedOf(options));
     Json json{{"Name", "adaptiso"},
               {"BIDSVersion", "1.8.0"},
               {"DatasetType", "derivative"},
@@ -509,7 +481,7 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
                            ": is not there; run the participant level first");
     }
     requireOwnDataset(options.output);
-    requireOwnOptions(options);
+    fillInOptions(options);
     const DatasetStatus status(options, chosen);
     if (status.records == 0) {
         throw InvalidInput(options.output.string() +

@@ -34,7 +34,6 @@ struct BidsOptions {
 
     double outlierLimit = 3.5;  ///< robust standard deviations
     double outlierPercent = 1;  ///< of the median, at least
-    bool force = false;         ///< replaces a table made with other options
     std::optional<int> jobs;
     CommonOptions common;
 };

@@ -72,8 +72,6 @@ void declareRunning(CLI::App& app, BidsOptions& options) {
                  "distance from the median) from the cohort's median (default: 3.5)");
     group.number("--outlier-percent", "P", options.outlierPercent, {.least = 0, .most = 100},
                  "Do not mark values within P per cent of the median (default: 1)");
-    group.flag("--force", options.force,
-               "Replace a table made with other options than these and the participant level's");
     OptionGroup(app, "Running")
         .count("--jobs", options.jobs, 1, 1024,
                "Participant level: work on N scans at a time (default: 1)");
@@ -98,7 +96,6 @@ void checkCombinations(BidsOptions& options) {
     require(!options.makes("check") || options.makes("surfaces") || isGroup,
             "--check: needs --surfaces");
     require(!isGroup || !options.jobs, "--jobs: is for the participant level");
-    require(isGroup || !options.force, "--force: is for the group level");
     std::error_code error;
     require(!fs::equivalent(options.dataset, options.output, error),
             "OUT_DIR " + options.output.string() +

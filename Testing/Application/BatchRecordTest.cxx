@@ -121,14 +121,13 @@ TEST_F(RecordedFilesTest, TellsGoneFromChanged) {
     const RecordedFile recorded = describeFile("a", file);
     EXPECT_EQ(recorded.bytes, 3u);
     EXPECT_EQ(recorded.sha256, kOfAbc);
-    EXPECT_EQ(changeOf(recorded, file, false), "");
-    put("a", "abd");
-    EXPECT_EQ(changeOf(recorded, file, false), "has changed");
-    EXPECT_EQ(changeOf(recorded, file, true), "has changed");
+    EXPECT_EQ(changeOf(recorded, file), "");
+    put("a", "abcd");
+    EXPECT_EQ(changeOf(recorded, file), "has changed");
     fs::remove(file);
-    EXPECT_EQ(changeOf(recorded, file, false), "is gone");
+    EXPECT_EQ(changeOf(recorded, file), "is gone");
     fs::create_directory(file);
-    EXPECT_EQ(changeOf(recorded, file, false), "has changed");
+    EXPECT_EQ(changeOf(recorded, file), "has changed");
 }
 
 TEST_F(RecordedFilesTest, NoticesAChangeThatPutsTheTimeBack) {
@@ -137,12 +136,12 @@ TEST_F(RecordedFilesTest, NoticesAChangeThatPutsTheTimeBack) {
     const RecordedFile recorded = describeFile("a", file);
     put("a", "abd");
     fs::last_write_time(file, time);
-    EXPECT_EQ(changeOf(recorded, file, true), "has changed");
+    EXPECT_EQ(changeOf(recorded, file), "has changed");
 }
 
 TEST_F(RecordedFilesTest, TakesACopyForTheSame) {
     const RecordedFile recorded = describeFile("a", put("a", "abc"));
-    EXPECT_EQ(changeOf(recorded, put("b", "abc"), true), "");
+    EXPECT_EQ(changeOf(recorded, put("b", "abc")), "");
 }
 
 TEST_F(RecordedFilesTest, AFolderOfZarrIsItsHiddenMetadataToo) {

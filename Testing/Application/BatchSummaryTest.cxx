@@ -32,26 +32,22 @@ protected:
     SummaryRow row_;
 };
 
-TEST_F(BatchSummaryTest, LinksTheReportWithItsFirstPictureAsThumbnail) {
-    write("reports/a.html",
-          "<p><img alt=\"x\" src=\"data:image/png;base64,AAAA\"><img "
-          "src=\"data:image/png;base64,BBBB\">");
+TEST_F(BatchSummaryTest, LinksTheReport) {
+    write("reports/a.html", "<img src=\"data:image/png;base64,AAAA\">");
     row_.report = folder_ / "reports/a.html";
     const std::string text = page();
     EXPECT_NE(text.find("<a href=\"reports/a.html\">report of a</a>"), std::string::npos);
-    EXPECT_NE(text.find("<a href=\"reports/a.html\"><img src=\"data:image/png;base64,AAAA\" "
-                        "alt=\"picture of a\"></a>"),
-              std::string::npos);
-    EXPECT_EQ(text.find("BBBB"), std::string::npos);
+    EXPECT_EQ(text.find("<img"), std::string::npos);  // 1,000 reports would be 300 MB
 }
 
-TEST_F(BatchSummaryTest, PrefersAPictureOfItsOwnFolder) {
+TEST_F(BatchSummaryTest, LinksAPictureOfItsFolderToTheReport) {
     write("a.html", "<img src=\"data:image/png;base64,AAAA\">");
     write("a pictures/surface-1.png", "png");
     row_.report = folder_ / "a.html";
     row_.pictures = folder_ / "a pictures";
     const std::string text = page();
-    EXPECT_NE(text.find("<img src=\"a%20pictures/surface-1.png\""), std::string::npos);
+    EXPECT_NE(text.find("<a href=\"a.html\"><img src=\"a%20pictures/surface-1.png\""),
+              std::string::npos);
     EXPECT_EQ(text.find("AAAA"), std::string::npos);
 }
 

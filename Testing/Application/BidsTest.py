@@ -191,7 +191,6 @@ class Participants(BidsTest):
                 (USAGE, "max-error", ("participant", "--participant-label", "01", "--surfaces",
                                       "iso=1,max-error=-3")),
                 (BAD_INPUT, "there is no folder sub-99", ("participant", "--participant-label", "99")),
-                (USAGE, "--force: is for the group level", ("participant", "--force")),
                 (BAD_INPUT, "out: is not there; run the participant level first", ("group",))):
             with self.subTest(pattern):
                 shutil.rmtree(self.path("out"), ignore_errors=True)
@@ -506,15 +505,11 @@ class Group(BidsTest):
         self.assertEqual({row["check"] for row in self.table()}, {"passed"})
         self.bids(OK, "group", what=what)
         self.assertEqual(self.tree(), whole)
-        # a table made with others stays
-        page = self.path("out/summary.html").read_bytes()
-        done = self.bids(BAD_INPUT, "group", what=("--surfaces", "iso=auto"))
-        self.assertRegex(done.stderr, "quality.tsv: was made with other options than --surfaces "
-                                      "iso=auto; .*--force")
-        self.assertEqual((self.tree(), self.path("out/summary.html").read_bytes()), (whole, page))
-        done = self.bids(CHECK_FAILED, "group", "--force", what=("--surfaces", "iso=100.5"))
+        # of others nothing is there, and the same again takes the participant level's
+        done = self.bids(CHECK_FAILED, "group", what=("--surfaces", "iso=100.5"))
         self.assertIn("7 participants, 0 whole", done.stdout)
         self.bids(OK, "group", what=())
+        self.assertEqual(self.tree(), whole)
 
     def test_takes_what_most_participants_were_asked_for(self):
         self.bids(OK, "participant")
