@@ -199,7 +199,6 @@ int runApp(int argc, const char* const* argv, const Program& program,
             std::cout << shortHelp(app);
             return runParsed(program, [] { return flushResults(), kExitOk; });
         }
-        refuseMissingValues(app);
         refuseMisplacedValues(app, argc, argv);
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {

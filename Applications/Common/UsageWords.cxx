@@ -170,34 +170,27 @@ std::string alternatives(const std::vector<std::string>& words) {
     return text;
 }
 
-void refuseMissingValues(CLI::App& app) {
-    for (CLI::Option* option : app.get_options()) {
-        if (!takesValue(*option)) continue;
-        option->check([&app, option](const std::string& value) -> std::string {
-            if (value.empty()) return "its value is empty; give " + valueName(*option);
-            const bool isOption =
-                value.starts_with("--") && optionNamed(app, beforeEquals(value)) != nullptr;
-            if (!isOption) return "";
-            return "its value is missing; " + value + " is an option";
-        });
-    }
-}
-
 void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* argv) {
     for (int n = 1; n < argc; ++n) {
-        const std::string_view word = argv[n];
+        const std::string_view word = argv[n], name = beforeEquals(word);
         if (word == "--") return;
-        const std::size_t equals = word.find('=');
-        const CLI::Option* const option = optionNamed(app, word.substr(0, equals));
-        if (option == nullptr) continue;
-        const std::string name = nameOf(*option);
-        if (equals == std::string_view::npos) {
-            if (n + 1 < argc || option->get_items_expected_min() == 0) continue;
-            throw UsageError(name + ": its value is missing; give " + valueName(*option));
+        if (word.empty() && !positionals(app).empty()) {
+            throw UsageError(positionals(app) + ": its value is empty");
         }
-        if (!takesValue(*option)) throw UsageError(name + ": takes no value");
-        if (equals + 1 < word.size()) continue;
-        throw UsageError(name + ": its value is empty; give " + valueName(*option));
+        const CLI::Option* const option = optionNamed(app, name);
+        if (option == nullptr) continue;
+        const auto refuse = [&](const std::string& fault) {
+            throw UsageError(nameOf(*option) + ": " + fault);
+        };
+        const bool hasOwn = name.size() < word.size();
+        if (!takesValue(*option) && hasOwn) refuse("takes no value");
+        if (!hasOwn && option->get_items_expected_min() == 0) continue;
+        if (!hasOwn && n + 1 == argc) refuse("its value is missing; give " + valueName(*option));
+        const std::string_view value = hasOwn ? word.substr(name.size() + 1) : argv[++n];
+        if (value.empty()) refuse("its value is empty; give " + valueName(*option));
+        if (value.starts_with("--") && optionNamed(app, beforeEquals(value)) != nullptr) {
+            refuse("its value is missing; " + std::string(value) + " is an option");
+        }
     }
 }
 
@@ -239,7 +232,7 @@ std::string inWords(const CLI::App& app, const CLI::ParseError& error) {
             return name + ": is given " + std::to_string(given) + " times; give it once";
         }
     }
-    return error.what();  // a check of ours: refuseMissingValues()
+    return error.what();
 }
 
 }  // namespace adaptiso

@@ -27,12 +27,9 @@ std::string suggestion(std::string_view typed, const std::vector<std::string>& w
 /// "adaptive, boxes or mc"
 std::string alternatives(const std::vector<std::string>& words);
 
-/// Makes every option that takes a value refuse an empty one, and one that is the name of another
-/// option: its own was forgotten. \pre all options are declared
-void refuseMissingValues(CLI::App& app);
-
-/// Refuses "--name=", after which the parser would take the next word for the value, a last option
-/// whose value is missing, and "--flag=value". \throws UsageError
+/// Refuses an option whose value is missing, empty or the name of another option, "--flag=value",
+/// and an empty argument. The parser would take the next word for the value. \throws UsageError
+/// \pre all options are declared
 void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* argv);
 
 /// Refuses the name of an output, the value of `option`, that holds a placeholder ("{iso}") which
