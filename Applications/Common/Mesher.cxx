@@ -7,6 +7,7 @@
 
 #include "Common/ChildProcess.h"
 #include "Common/OptionValues.h"
+#include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -17,13 +18,6 @@ namespace fs = std::filesystem;
 std::string bytesOf(const fs::path& path) {
     std::ifstream stream(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-void write(const fs::path& path, const std::string& text) {
-    std::ofstream stream(path, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) throw FileError(path.string() + ": can't be written");
 }
 
 void run(const std::string& mesher, const std::vector<std::string>& arguments,
@@ -37,7 +31,7 @@ void run(const std::string& mesher, const std::vector<std::string>& arguments,
 
 TetrahedralMesh byTetgen(const MesherInput& input, double elementMm) {
     ScratchFolder folder;
-    write(folder.place("head.poly"), tetgenInput(input, elementMm));
+    writeText(folder.place("head.poly"), tetgenInput(input, elementMm));
     const fs::path nodes = folder.place("head.1.node"), elements = folder.place("head.1.ele");
     for (const char* name : {"head.1.face", "head.1.edge", "head.1.smesh"}) folder.place(name);
     // radius by shortest edge 1.4 and dihedral angles of 10 degrees where the walls allow them
@@ -47,8 +41,8 @@ TetrahedralMesh byTetgen(const MesherInput& input, double elementMm) {
 
 TetrahedralMesh byGmsh(const MesherInput& input, double elementMm) {
     ScratchFolder folder;
-    write(folder.place("walls.msh"), gmshWalls(input));
-    write(folder.place("head.geo"), gmshScript(input, "walls.msh", elementMm));
+    writeText(folder.place("walls.msh"), gmshWalls(input));
+    writeText(folder.place("head.geo"), gmshScript(input, "walls.msh", elementMm));
     const fs::path made = folder.place("head.msh");
     run("gmsh", {"-3", "-nt", "1", "-format", "msh22", "-o", "head.msh", "head.geo"}, folder,
         "head.msh");

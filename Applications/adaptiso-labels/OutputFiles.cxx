@@ -8,6 +8,7 @@
 #include <regex>
 #include <utility>
 
+#include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -107,11 +108,6 @@ std::string domainName(Label label) {
     return "Region" + std::to_string(label);
 }
 
-std::string shortest(double value) {
-    std::array<char, 64> digits;
-    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
-
 /// "Interface Region1: +wall_1_2 -wall_0_1": the walls of a label, outward of it or into it.
 std::string interfaceLine(const LayerMeshes& meshes, const std::string& name, Label label,
                           bool isOutward) {
@@ -174,7 +170,8 @@ std::string layersConductivities(const std::vector<Region>& regions,
                                  const std::map<Label, double>& conductivities) {
     std::string text = "# Properties Description 1.0 (Conductivities)\n\n";
     for (const Region& region : regions) {
-        text += domainName(region.label) + " " + shortest(conductivities.at(region.label)) + "\n";
+        text +=
+            domainName(region.label) + " " + shortestText(conductivities.at(region.label)) + "\n";
     }
     return text + "Air 0\n";
 }

@@ -1,9 +1,9 @@
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
 
 #include <array>
-#include <charconv>
 
 #include "OpenMeegNames.h"
+#include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
@@ -22,11 +22,6 @@ const char* domainOf(std::size_t n, std::size_t count) {
     constexpr std::array<const char*, kHeadSurfaceCount> kFour{"Brain", "CSF", "Skull", "Skin"};
     constexpr std::array<const char*, 3> kThree{"Brain", "Skull", "Skin"};
     return count == kHeadSurfaceCount ? kFour[n] : kThree[n];
-}
-
-std::string text(double value) {
-    std::array<char, 64> digits;
-    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
 }  // namespace
@@ -54,7 +49,7 @@ std::string openMeegConductivities(std::size_t surfaces, const ConductivityModel
     std::string lines = std::string(openmeeg::kConductivityHeader) + "\n\n";
     for (std::size_t n = 0; n < surfaces; ++n) {
         lines += std::string(domainOf(n, surfaces)) + " " +
-                 text(model.within(headSurface(n, surfaces), surfaces)) + "\n";
+                 shortestText(model.within(headSurface(n, surfaces), surfaces)) + "\n";
     }
     return lines + "Air 0\n";
 }

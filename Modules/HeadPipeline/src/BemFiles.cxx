@@ -1,13 +1,11 @@
 #include "adaptiso/HeadPipeline/BemFiles.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <utility>
 
 #include "BemFileKinds.h"
 #include "BemReadme.h"
+#include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
@@ -20,16 +18,6 @@ namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
-
-void writeText(const fs::path& path, const std::string& text) {
-    errno = 0;
-    std::ofstream file(path, std::ios::binary | std::ios::trunc);
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    file.close();
-    if (file) return;
-    throw FileError(path.string() + ": can't be written" +
-                    (errno == 0 ? std::string() : std::string(": ") + std::strerror(errno)));
-}
 
 constexpr double kMetresPerMm = 0.001;
 

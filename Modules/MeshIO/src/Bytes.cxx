@@ -14,20 +14,6 @@
 
 namespace adaptiso::meshio {
 
-ByteSink& ByteSink::operator<<(std::int64_t number) {
-    char text[24];
-    const auto end = std::to_chars(text, text + sizeof(text), number).ptr;
-    return *this << std::string_view(text, static_cast<std::size_t>(end - text));
-}
-
-ByteSink& ByteSink::operator<<(double number) {
-    char text[40];
-    const auto end = std::to_chars(text, text + sizeof(text), number + 0.0,  // + 0.0: no "-0"
-                                   std::chars_format::general, 9)
-                         .ptr;
-    return *this << std::string_view(text, static_cast<std::size_t>(end - text));
-}
-
 namespace {
 
 constexpr bool isSpace(char c) {
@@ -172,14 +158,6 @@ float toFloat(double value, std::string_view what) {
     return static_cast<float>(value);
 }
 
-namespace {
-
-std::string systemReason() {
-    return errno != 0 ? std::strerror(errno) : "unknown reason";
-}
-
-}  // namespace
-
 std::string readBytes(const std::filesystem::path& path, std::uint64_t most) {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -207,23 +185,6 @@ std::string readBytes(const std::filesystem::path& path, std::uint64_t most) {
                         std::to_string(size) + " bytes can be read; check the disk");
     }
     return bytes;
-}
-
-void writeBytes(const std::filesystem::path& path, const std::function<void(ByteSink&)>& write) {
-    errno = 0;
-    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    if (!stream) {
-        throw FileError(path.string() + ": can't be made (" + systemReason() +
-                        "); check that the folder exists and may be written to");
-    }
-    ByteSink sink(stream);
-    write(sink);
-    sink.finish();
-    stream.close();
-    if (!stream) {
-        throw FileError(path.string() + ": can't be written (" + systemReason() +
-                        "); free space on the disk or write elsewhere");
-    }
 }
 
 }  // namespace adaptiso::meshio

@@ -4,73 +4,16 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <functional>
 #include <limits>
-#include <ostream>
+#include <new>
 #include <string>
 #include <string_view>
-#include <utility>
 
+#include "adaptiso/Core/Bytes.h"
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::meshio {
-
-template <class T>
-T swappedBytes(T value) {
-    std::uint8_t bytes[sizeof(T)];
-    std::memcpy(bytes, &value, sizeof(T));
-    for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
-    std::memcpy(&value, bytes, sizeof(T));
-    return value;
-}
-
-/// Appends the bytes of a number, the least first.
-template <class T>
-void appendLittleEndian(T value, std::string& bytes) {
-    if (std::endian::native == std::endian::big) value = swappedBytes(value);
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
-/// Collects the bytes of a file in memory and hands them to a stream in large pieces. Errors of
-/// the stream are the owner's to check, after finish().
-class ByteSink {
-public:
-    explicit ByteSink(std::ostream& stream) : stream_(stream) { buffer_.reserve(kPiece + 256); }
-
-    ByteSink& operator<<(std::string_view text) {
-        buffer_.append(text);
-        if (buffer_.size() >= kPiece) finish();
-        return *this;
-    }
-    ByteSink& operator<<(std::int64_t number);
-    /// Nine significant digits, as few characters as that takes; the same in every locale.
-    ByteSink& operator<<(double number);
-
-    template <class T>
-    void littleEndian(T value) {
-        put(std::endian::native == std::endian::little ? value : swappedBytes(value));
-    }
-    template <class T>
-    void bigEndian(T value) {
-        put(std::endian::native == std::endian::big ? value : swappedBytes(value));
-    }
-
-    void finish() {
-        stream_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-        buffer_.clear();
-    }
-
-private:
-    static constexpr std::size_t kPiece = std::size_t{1} << 20;
-
-    template <class T>
-    void put(const T& value) {
-        *this << std::string_view(reinterpret_cast<const char*>(&value), sizeof(T));
-    }
-
-    std::ostream& stream_;
-    std::string buffer_;
-};
 
 /// Fails with FileError "<what>; the file is cut off or damaged, ...": bytes that are missing or
 /// that no program writes. decodeMesh() puts the file's name in front.
@@ -137,13 +80,22 @@ double toReal(std::string_view word, std::string_view what);
 /// refuses them).
 float toFloat(double value, std::string_view what);
 
+/// Calls make(); errors get the file's name.
+template <class Make>
+auto naming(std::string_view name, const Make& make) {
+    const std::string prefix = std::string(name) + ": ";
+    try {
+        return make();
+    } catch (const FileError& error) {
+        throw FileError(prefix + error.what());
+    } catch (const std::bad_alloc&) {
+        throw FileError(prefix + "it does not fit into memory; use a larger machine");
+    }
+}
+
 /// The bytes of a regular file, at most `most`. \throws FileError  "<file>: what is wrong; what to
 /// do"
 std::string readBytes(const std::filesystem::path& path,
                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
-
-/// Makes a file, or replaces what is in it, with what `write` hands to the sink.
-/// \throws FileError  "<file>: what is wrong; what to do"
-void writeBytes(const std::filesystem::path& path, const std::function<void(ByteSink&)>& write);
 
 }  // namespace adaptiso::meshio

@@ -387,7 +387,7 @@ void writeFiffHeadToMri(const AffineTransform& metres, const std::filesystem::pa
 }
 
 std::vector<FiffSurface> decodeFiffSurfaces(std::string_view bytes, std::string_view name) {
-    try {
+    return meshio::naming(name, [&] {
         const fiff::Content content = fiff::decode(bytes);
         std::vector<FiffSurface> surfaces;
         for (std::size_t block = 1; block < content.blocks.size(); ++block) {
@@ -397,12 +397,7 @@ std::vector<FiffSurface> decodeFiffSurfaces(std::string_view bytes, std::string_
         }
         if (surfaces.empty()) unsupported("it holds no surface", "give a file of surfaces");
         return surfaces;
-    } catch (const FileError& error) {
-        throw FileError(std::string(name) + ": " + error.what());
-    } catch (const std::bad_alloc&) {
-        throw FileError(std::string(name) +
-                        ": the surfaces do not fit into memory; use a larger machine");
-    }
+    });
 }
 
 std::vector<FiffSurface> readFiffSurfaces(const std::filesystem::path& path) {

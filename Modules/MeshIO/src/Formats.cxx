@@ -121,8 +121,8 @@ std::string_view firstLine(std::string_view text) {
 bool isCurv(std::string_view head, std::uint64_t byteCount) {
     constexpr std::uint64_t kHeaderBytes = 15;
     if (!head.starts_with("\xFF\xFF\xFF") || head.size() < kHeaderBytes) return false;
-    const auto points = loadAs<std::uint32_t>(head.data() + 3, std::endian::big);
-    const auto columns = loadAs<std::uint32_t>(head.data() + 11, std::endian::big);
+    const auto points = meshio::loadAs<std::uint32_t>(head.data() + 3, std::endian::big);
+    const auto columns = meshio::loadAs<std::uint32_t>(head.data() + 11, std::endian::big);
     return columns == 1 && byteCount == kHeaderBytes + 4 * std::uint64_t{points};
 }
 
@@ -140,7 +140,7 @@ bool isOff(std::string_view head) {
 bool isStl(std::string_view head, std::uint64_t byteCount) {
     constexpr std::uint64_t kHeaderBytes = 84, kTriangleBytes = 50;
     if (head.size() >= kHeaderBytes) {
-        const auto count = loadAs<std::uint32_t>(head.data() + 80, std::endian::little);
+        const auto count = meshio::loadAs<std::uint32_t>(head.data() + 80, std::endian::little);
         if (count > 0 && byteCount == kHeaderBytes + kTriangleBytes * count) return true;
     }
     const std::string text = lowerCase(trimmed(head));
@@ -224,8 +224,9 @@ bool isDicom(std::string_view head) {
 /// FreeSurfer's volumes: version 1, sizes that may be.
 bool isMgh(std::string_view head) {
     if (!head.starts_with("\0\0\0\1"sv) || head.size() < 284) return false;
-    const auto type = loadAs<std::int32_t>(head.data() + 20, std::endian::big);
-    return type >= 0 && type <= 10 && loadAs<std::int32_t>(head.data() + 4, std::endian::big) > 0;
+    const auto type = meshio::loadAs<std::int32_t>(head.data() + 20, std::endian::big);
+    return type >= 0 && type <= 10 &&
+           meshio::loadAs<std::int32_t>(head.data() + 4, std::endian::big) > 0;
 }
 
 /// "P 0.3 0.3 0.4 10 1 40962": the surface's properties and its number of points.

@@ -10,9 +10,6 @@
 namespace adaptiso {
 namespace {
 
-using meshio::ByteSink;
-using meshio::writeBytes;
-
 void encodeKey(const LabelKey& label, bool isSeen, ByteSink& sink) {
     sink << "<Label Key=\"" << std::int64_t{label.key} << "\"";
     constexpr const char* kChannels[] = {" Red=\"", " Green=\"", " Blue=\""};
@@ -33,7 +30,7 @@ void writeGiftiLabels(std::span<const std::int32_t> labels, std::span<const Labe
     }
     std::string bytes;
     bytes.reserve(labels.size_bytes());
-    for (const std::int32_t label : labels) meshio::appendLittleEndian(label, bytes);
+    for (const std::int32_t label : labels) appendLittleEndian(label, bytes);
     writeBytes(path, [&](ByteSink& sink) {
         sink << meshio::kGiftiHead
              << "<GIFTI Version=\"1.0\" NumberOfDataArrays=\"1\">\n<MetaData/>\n<LabelTable>\n";

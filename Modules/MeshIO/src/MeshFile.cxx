@@ -16,7 +16,7 @@
 namespace adaptiso {
 namespace {
 
-using Encoder = void (*)(const meshio::MeshRecord&, meshio::ByteSink&);
+using Encoder = void (*)(const meshio::MeshRecord&, ByteSink&);
 using Decoder = MeshFile (*)(std::string_view, const MeshReadOptions&);
 
 struct Codec {
@@ -194,25 +194,12 @@ void scaleToUnitLength(std::vector<Normal>& normals) {
 
 constexpr std::string_view kGzipMagic = "\x1F\x8B";
 
-/// Calls make(); errors get the file's name.
-template <class Make>
-auto naming(std::string_view name, const Make& make) {
-    const std::string prefix = std::string(name) + ": ";
-    try {
-        return make();
-    } catch (const FileError& error) {
-        throw FileError(prefix + error.what());
-    } catch (const std::bad_alloc&) {
-        throw FileError(prefix + "the surface does not fit into memory; use a larger machine");
-    }
-}
-
 /// By content, else by name. \throws FileError  neither says it
 const MeshFormat& formatOf(std::string_view bytes, std::string_view name, bool isPacked) {
     const std::string_view head = bytes.substr(0, kMeshHeadBytes);
     if (const MeshFormat* const found = recognizeMeshFormat(head, bytes.size())) return *found;
     const std::filesystem::path path(name);
-    naming(name, [&] { meshio::refuseOtherContent(head, bytes.size(), path, isPacked); });
+    meshio::naming(name, [&] { meshio::refuseOtherContent(head, bytes.size(), path, isPacked); });
     try {
         return findMeshFormat(isPacked ? path.parent_path() / path.stem() : path);
     } catch (const InvalidInput& error) {
@@ -288,14 +275,12 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
     const TriangleMesh moved = movedTo(options, mesh, path.string());
     requireWritable(moved, format, options, path.string());
 
-    meshio::writeBytes(path, [&](meshio::ByteSink& sink) {
-        codecOf(format.id).encode({moved, options}, sink);
-    });
+    writeBytes(path, [&](ByteSink& sink) { codecOf(format.id).encode({moved, options}, sink); });
 }
 
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
                     const MeshReadOptions& options) {
-    return naming(name, [&] {
+    return meshio::naming(name, [&] {
         MeshFile file = codecOf(format.id).decode(meshio::withoutMark(bytes), options);
         file.format = &format;
         if (options.keepsFaults) {
@@ -313,7 +298,7 @@ MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::strin
 
 MeshFile decodeMesh(std::string_view bytes, std::string_view name, const MeshReadOptions& options) {
     const bool isPacked = bytes.starts_with(kGzipMagic);
-    const std::string unpacked = naming(name, [&] {
+    const std::string unpacked = meshio::naming(name, [&] {
         if (!isPacked) return std::string();
         const std::string head = meshio::gunzipped(bytes, kMeshHeadBytes);
         if (!recognizeMeshFormat(head, 0)) meshio::refuseOtherContent(head, 0, name, true);
@@ -335,7 +320,7 @@ MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& opti
     const std::string head = meshio::readBytes(path, kMeshHeadBytes);
     const std::uint64_t byteCount = std::filesystem::file_size(path, error);
     if (!head.starts_with(kGzipMagic) && !recognizeMeshFormat(head, byteCount)) {
-        naming(name, [&] { meshio::refuseOtherContent(head, byteCount, path, false); });
+        meshio::naming(name, [&] { meshio::refuseOtherContent(head, byteCount, path, false); });
         const auto foreign = findForeignContent(path);  // zeros, whatever their length
         if (foreign) throw FileError(name + ": " + foreign->fault + "; " + foreign->remedy);
     }

@@ -511,7 +511,7 @@ struct PlyStream::Impl {
 
     std::filesystem::path path;
     std::ofstream file;
-    meshio::ByteSink sink;
+    ByteSink sink;
     std::int64_t pointsLeft, trianglesLeft;
     bool hasNormals;
 };

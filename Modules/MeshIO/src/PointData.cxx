@@ -288,7 +288,6 @@ namespace adaptiso {
 
 namespace {
 
-using meshio::ByteSink;
 using meshio::ByteSource;
 using meshio::damaged;
 
@@ -503,16 +502,11 @@ PointDataFormat findPointDataFormat(const std::filesystem::path& path) {
 }
 
 PointData decodePointData(std::string_view bytes, PointDataFormat format, std::string_view name) {
-    const std::string prefix = std::string(name) + ": ";
-    try {
+    return meshio::naming(name, [&] {
         PointData data = decode(bytes, format);
         if (const std::string fault = faultOf(data); !fault.empty()) damaged(fault);
         return data;
-    } catch (const FileError& error) {
-        throw FileError(prefix + error.what());
-    } catch (const std::bad_alloc&) {
-        throw FileError(prefix + "it does not fit into memory; use a larger machine");
-    }
+    });
 }
 
 PointData readPointData(const std::filesystem::path& path) {
@@ -525,7 +519,7 @@ PointData readPointData(const std::filesystem::path& path) {
 void writePointData(const PointData& data, std::int64_t triangles,
                     const std::filesystem::path& path) {
     requireWritable(data, path.string());
-    meshio::writeBytes(path, [&](ByteSink& sink) {
+    writeBytes(path, [&](ByteSink& sink) {
         switch (data.format) {
             case PointDataFormat::FreeSurferCurv:
                 return encodeCurv(data, triangles, sink);

@@ -319,25 +319,16 @@ std::string coordinateSystemText(std::span<const NamedPoint> points, CoordinateF
     return json.dump(2) + "\n";
 }
 
-ByteSink& operator<<(ByteSink& sink, const Vec3& p) {
-    return sink << p.x << " " << p.y << " " << p.z;
-}
-
 }  // namespace
 
 PointFile decodePoints(std::string_view bytes, std::string_view extension, std::string_view name,
                        const std::optional<std::string>& coordinateSystem) {
-    try {
+    return meshio::naming(name, [&] {
         PointFile file = decoded(bytes, extension);
         if (coordinateSystem) applyCoordinateSystem(*coordinateSystem, file);
         if (file.points.empty()) damaged("it holds no point");
         return file;
-    } catch (const FileError& error) {
-        throw FileError(std::string(name) + ": " + error.what());
-    } catch (const std::bad_alloc&) {
-        throw FileError(std::string(name) +
-                        ": the points do not fit into memory; use a larger machine");
-    }
+    });
 }
 
 PointFile readPoints(const std::filesystem::path& path) {

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Tetrahedra/Tetrahedra.h"
@@ -17,17 +18,12 @@
 namespace adaptiso {
 namespace {
 
-std::string text(double value) {
-    std::array<char, 40> digits;
-    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
-
 std::string text(std::integral auto value) {
     return std::to_string(value);
 }
 
 std::string text(const Vec3& p) {
-    return text(p.x) + " " + text(p.y) + " " + text(p.z);
+    return shortestText(p.x) + " " + shortestText(p.y) + " " + shortestText(p.z);
 }
 
 /// Numbers between white space; lines that begin with '#' are passed over.
@@ -139,7 +135,7 @@ std::string tetgenInput(const MesherInput& input, double elementMm) {
     number = 0;
     for (const MesherVolume& volume : input.volumes) {
         poly += text(++number) + " " + text(volume.insideMm) + " " + text(volume.region) + " " +
-                text(mm3) + "\n";
+                shortestText(mm3) + "\n";
     }
     return poly;
 }
@@ -161,7 +157,7 @@ std::string gmshWalls(const MesherInput& input) {
 
 std::string gmshScript(const MesherInput& input, std::string_view wallsFile, double elementMm) {
     std::string script =
-        "General.Terminal = 1;\nMesh.CharacteristicLengthMax = " + text(elementMm) +
+        "General.Terminal = 1;\nMesh.CharacteristicLengthMax = " + shortestText(elementMm) +
         ";\nMesh.CharacteristicLengthExtendFromBoundary = 1;\n"
         "Mesh.Optimize = 1;\nMesh.OptimizeNetgen = 0;\nMerge \"" +
         std::string(wallsFile) + "\";\n";

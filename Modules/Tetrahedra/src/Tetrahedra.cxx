@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <tuple>
 #include <utility>
 
-#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -161,53 +157,6 @@ void takeRegions(TetrahedralMesh& mesh, std::span<const TetrahedraRegion> region
 
 namespace {
 
-/// Text in large pieces; numbers as short as they are exact to nine digits, the same everywhere.
-class TextFile {
-public:
-    explicit TextFile(const std::filesystem::path& path)
-        : path_(path), stream_(path, std::ios::binary | std::ios::trunc) {}
-
-    TextFile& operator<<(std::string_view text) {
-        buffer_ += text;
-        if (buffer_.size() > kPiece) flush();
-        return *this;
-    }
-    TextFile& operator<<(std::int64_t number) {
-        std::array<char, 24> digits;
-        char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-        return *this << std::string_view(digits.data(),
-                                         static_cast<std::size_t>(end - digits.data()));
-    }
-    TextFile& operator<<(const Vec3& p) {
-        for (int a = 0; a < 3; ++a) {
-            std::array<char, 40> digits;
-            const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), p[a] + 0.0,
-                                           std::chars_format::general, 9)
-                                 .ptr;
-            *this << (a == 0 ? "" : " ")
-                  << std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data()));
-        }
-        return *this;
-    }
-    void finish() {
-        flush();
-        stream_.close();
-        if (!stream_)
-            throw FileError(path_.string() + ": can't be written: " + std::strerror(errno));
-    }
-
-private:
-    static constexpr std::size_t kPiece = std::size_t{1} << 20;
-    void flush() {
-        stream_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-        buffer_.clear();
-    }
-
-    std::filesystem::path path_;
-    std::ofstream stream_;
-    std::string buffer_;
-};
-
 /// Names stand in quotes.
 std::string quotable(std::string name) {
     for (char& c : name) {
@@ -216,7 +165,7 @@ std::string quotable(std::string name) {
     return name;
 }
 
-void writeNames(TextFile& file, std::span<const TetrahedraRegion> regions) {
+void writeNames(ByteSink& file, std::span<const TetrahedraRegion> regions) {
     file << "$PhysicalNames\n" << std::ssize(regions) << "\n";
     for (const TetrahedraRegion& region : regions) {
         file << "3 " << std::int64_t{region.label} << " \"" << quotable(region.name) << "\"\n";
@@ -276,28 +225,28 @@ std::vector<Wall> wallsOf(const TetrahedralMesh& mesh) {
 void writeMsh22(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
                 const std::filesystem::path& path, bool withWalls) {
     const std::vector<Wall> walls = withWalls ? wallsOf(mesh) : std::vector<Wall>{};
-    TextFile file(path);
-    file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-    writeNames(file, regions);
-    file << "$Nodes\n" << std::ssize(mesh.points) << "\n";
-    std::int64_t number = 0;
-    for (const Vec3& p : mesh.points) file << ++number << " " << p << "\n";
-    file << "$EndNodes\n$Elements\n" << std::ssize(walls) + std::ssize(mesh.tetrahedra) << "\n";
-    std::int64_t element = 0;
-    for (const Wall& wall : walls) {
-        const std::int64_t tag = 1000 + std::int64_t{wall.label};
-        file << ++element << " 2 2 " << tag << " " << tag;
-        for (const VertexId corner : wall.corners) file << " " << corner + 1;
-        file << "\n";
-    }
-    for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
-        const auto& [a, b, c, d] = mesh.tetrahedra[n];
-        const std::int64_t tissue = mesh.labels[n];
-        file << ++element << " 4 2 " << tissue << " " << tissue << " " << a + 1 << " " << b + 1
-             << " " << c + 1 << " " << d + 1 << "\n";
-    }
-    file << "$EndElements\n";
-    file.finish();
+    writeBytes(path, [&](ByteSink& file) {
+        file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+        writeNames(file, regions);
+        file << "$Nodes\n" << std::ssize(mesh.points) << "\n";
+        std::int64_t number = 0;
+        for (const Vec3& p : mesh.points) file << ++number << " " << p << "\n";
+        file << "$EndNodes\n$Elements\n" << std::ssize(walls) + std::ssize(mesh.tetrahedra) << "\n";
+        std::int64_t element = 0;
+        for (const Wall& wall : walls) {
+            const std::int64_t tag = 1000 + std::int64_t{wall.label};
+            file << ++element << " 2 2 " << tag << " " << tag;
+            for (const VertexId corner : wall.corners) file << " " << corner + 1;
+            file << "\n";
+        }
+        for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
+            const auto& [a, b, c, d] = mesh.tetrahedra[n];
+            const std::int64_t tissue = mesh.labels[n];
+            file << ++element << " 4 2 " << tissue << " " << tissue << " " << a + 1 << " " << b + 1
+                 << " " << c + 1 << " " << d + 1 << "\n";
+        }
+        file << "$EndElements\n";
+    });
 }
 
 void writeMsh41(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
@@ -312,73 +261,74 @@ void writeMsh41(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> r
             high[a] = std::max(high[a], p[a]);
         }
     }
-    TextFile file(path);
-    file << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
-    writeNames(file, regions);
-    file << "$Entities\n0 0 0 " << std::ssize(regions) << "\n";
-    for (const TetrahedraRegion& region : regions) {
-        const std::int64_t tissue = region.label;
-        file << tissue << " " << low << " " << high << " 1 " << tissue << " 0\n";
-    }
-    file << "$EndEntities\n$Nodes\n1 " << points << " 1 " << points << "\n3 "
-         << std::int64_t{regions.front().label} << " 0 " << points << "\n";
-    for (std::int64_t n = 1; n <= points; ++n) file << n << "\n";
-    for (const Vec3& p : mesh.points) file << p << "\n";
-    file << "$EndNodes\n$Elements\n"
-         << std::ssize(regions) << " " << elements << " 1 " << elements << "\n";
-    std::int64_t number = 0;
-    for (const TetrahedraRegion& region : regions) {
-        const std::int32_t tissue = region.label;
-        file << "3 " << std::int64_t{tissue} << " 4 " << counts[tissue] << "\n";
-        for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
-            if (mesh.labels[n] != tissue) continue;
-            const auto& [a, b, c, d] = mesh.tetrahedra[n];
-            file << ++number << " " << a + 1 << " " << b + 1 << " " << c + 1 << " " << d + 1
-                 << "\n";
+    writeBytes(path, [&](ByteSink& file) {
+        file << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+        writeNames(file, regions);
+        file << "$Entities\n0 0 0 " << std::ssize(regions) << "\n";
+        for (const TetrahedraRegion& region : regions) {
+            const std::int64_t tissue = region.label;
+            file << tissue << " " << low << " " << high << " 1 " << tissue << " 0\n";
         }
-    }
-    file << "$EndElements\n";
-    file.finish();
+        file << "$EndEntities\n$Nodes\n1 " << points << " 1 " << points << "\n3 "
+             << std::int64_t{regions.front().label} << " 0 " << points << "\n";
+        for (std::int64_t n = 1; n <= points; ++n) file << n << "\n";
+        for (const Vec3& p : mesh.points) file << p << "\n";
+        file << "$EndNodes\n$Elements\n"
+             << std::ssize(regions) << " " << elements << " 1 " << elements << "\n";
+        std::int64_t number = 0;
+        for (const TetrahedraRegion& region : regions) {
+            const std::int32_t tissue = region.label;
+            file << "3 " << std::int64_t{tissue} << " 4 " << counts[tissue] << "\n";
+            for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
+                if (mesh.labels[n] != tissue) continue;
+                const auto& [a, b, c, d] = mesh.tetrahedra[n];
+                file << ++number << " " << a + 1 << " " << b + 1 << " " << c + 1 << " " << d + 1
+                     << "\n";
+            }
+        }
+        file << "$EndElements\n";
+    });
 }
 
 void writeVtu(const TetrahedralMesh& mesh, const std::filesystem::path& path) {
     const std::int64_t elements = std::ssize(mesh.tetrahedra);
-    TextFile file(path);
-    file << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
-            "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\""
-         << std::ssize(mesh.points) << "\" NumberOfCells=\"" << elements
-         << "\">\n<CellData Scalars=\"tissue\">\n<DataArray type=\"Int32\" Name=\"tissue\" "
-            "format=\"ascii\">\n";
-    for (const std::int64_t tissue : mesh.labels) file << tissue << "\n";
-    file << "</DataArray>\n</CellData>\n<Points>\n<DataArray type=\"Float64\" "
-            "NumberOfComponents=\"3\" format=\"ascii\">\n";
-    for (const Vec3& p : mesh.points) file << p << "\n";
-    file << "</DataArray>\n</Points>\n<Cells>\n<DataArray type=\"Int64\" Name=\"connectivity\" "
-            "format=\"ascii\">\n";
-    for (const auto& [a, b, c, d] : mesh.tetrahedra) {
-        file << a << " " << b << " " << c << " " << d << "\n";
-    }
-    file << "</DataArray>\n<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">\n";
-    for (std::int64_t n = 1; n <= elements; ++n) file << 4 * n << "\n";
-    file << "</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">\n";
-    for (std::int64_t n = 0; n < elements; ++n) file << "10\n";
-    file << "</DataArray>\n</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-    file.finish();
+    writeBytes(path, [&](ByteSink& file) {
+        file << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
+                "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\""
+             << std::ssize(mesh.points) << "\" NumberOfCells=\"" << elements
+             << "\">\n<CellData Scalars=\"tissue\">\n<DataArray type=\"Int32\" Name=\"tissue\" "
+                "format=\"ascii\">\n";
+        for (const std::int64_t tissue : mesh.labels) file << tissue << "\n";
+        file << "</DataArray>\n</CellData>\n<Points>\n<DataArray type=\"Float64\" "
+                "NumberOfComponents=\"3\" format=\"ascii\">\n";
+        for (const Vec3& p : mesh.points) file << p << "\n";
+        file << "</DataArray>\n</Points>\n<Cells>\n<DataArray type=\"Int64\" Name=\"connectivity\" "
+                "format=\"ascii\">\n";
+        for (const auto& [a, b, c, d] : mesh.tetrahedra) {
+            file << a << " " << b << " " << c << " " << d << "\n";
+        }
+        file << "</DataArray>\n<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">\n";
+        for (std::int64_t n = 1; n <= elements; ++n) file << 4 * n << "\n";
+        file << "</DataArray>\n<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">\n";
+        for (std::int64_t n = 0; n < elements; ++n) file << "10\n";
+        file << "</DataArray>\n</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+    });
 }
 
 void writeDgf(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
               const std::filesystem::path& path) {
     const std::map<std::int32_t, std::int64_t> places = placesOf(regions);
-    TextFile file(path);
-    file << "DGF\nVertex\n";
-    for (const Vec3& p : mesh.points) file << p << "\n";
-    file << "#\nSimplex\nparameters 1\n";
-    for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
-        const auto& [a, b, c, d] = mesh.tetrahedra[n];
-        file << a << " " << b << " " << c << " " << d << " " << places.at(mesh.labels[n]) << "\n";
-    }
-    file << "#\nBoundaryDomain\ndefault 1\n#\n";
-    file.finish();
+    writeBytes(path, [&](ByteSink& file) {
+        file << "DGF\nVertex\n";
+        for (const Vec3& p : mesh.points) file << p << "\n";
+        file << "#\nSimplex\nparameters 1\n";
+        for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
+            const auto& [a, b, c, d] = mesh.tetrahedra[n];
+            file << a << " " << b << " " << c << " " << d << " " << places.at(mesh.labels[n])
+                 << "\n";
+        }
+        file << "#\nBoundaryDomain\ndefault 1\n#\n";
+    });
 }
 
 }  // namespace adaptiso
