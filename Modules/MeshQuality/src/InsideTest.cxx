@@ -57,16 +57,6 @@ Side InsideTest::sideOf(const Vec3& p) const {
 
 namespace {
 
-/// Where `p` lies of the line from -> to: 1 left, -1 right, never 0. Ties are broken by moving p by
-/// (e^2, e), e infinitely small; 0 only where from and to are one point.
-int perturbedSide(const Point2& p, const Point2& from, const Point2& to) {
-    const int side = orient2d(from, to, p);
-    if (side != 0) return side;
-    const double along = to[0] - from[0], up = to[1] - from[1];
-    if (along != 0) return along > 0 ? 1 : -1;
-    return up > 0 ? -1 : up < 0 ? 1 : 0;
-}
-
 /// \pre p lies in the triangle's plane
 bool isOnTriangle(const Vec3& p, const Corners& t) {
     const int axis = axisWithArea(t);
@@ -77,6 +67,14 @@ bool isOnTriangle(const Vec3& p, const Corners& t) {
 }
 
 }  // namespace
+
+int perturbedSide(const Point2& p, const Point2& from, const Point2& to) {
+    const int side = orient2d(from, to, p);
+    if (side != 0) return side;
+    const double along = to[0] - from[0], up = to[1] - from[1];
+    if (along != 0) return along > 0 ? 1 : -1;
+    return up > 0 ? -1 : up < 0 ? 1 : 0;
+}
 
 Hit hitOf(const Vec3& p, const Ray& ray, const Corners& t) {
     const Point2 q = dropAxis(p, ray.axis);

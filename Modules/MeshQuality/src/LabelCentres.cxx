@@ -5,8 +5,8 @@
 #include <string>
 #include <tuple>
 
+#include "Triangles.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Geometry.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 
@@ -22,13 +22,6 @@ struct Crossing {
     int32_t first;     ///< the first centre behind it
     int32_t from, to;  ///< regions
 };
-
-/// orient2d() of a point moved by (e, e * e), e an infinitesimal: 0 only where a and b are one.
-int movedSide(const Point2& a, const Point2& b, const Point2& p) {
-    if (const int side = orient2d(a, b, p); side != 0) return side;
-    if (a[1] != b[1]) return a[1] > b[1] ? 1 : -1;
-    return a[0] == b[0] ? 0 : b[0] > a[0] ? 1 : -1;
-}
 
 /// Finds where the lines of voxels cross triangles, whose corners are indices.
 class LineCrossings {
@@ -57,9 +50,9 @@ private:
                int64_t k, std::vector<Crossing>& found) const {
         const Point2 line{static_cast<double>(j), static_cast<double>(k)};
         const auto flat = [&](int n) { return Point2{corners[n].y, corners[n].z}; };
-        const int side = movedSide(flat(0), flat(1), line);
-        if (side == 0 || movedSide(flat(1), flat(2), line) != side ||
-            movedSide(flat(2), flat(0), line) != side) {
+        const int side = perturbedSide(line, flat(0), flat(1));
+        if (side == 0 || perturbedSide(line, flat(1), flat(2)) != side ||
+            perturbedSide(line, flat(2), flat(0)) != side) {
             return;
         }
         // the normal points to larger i where the corners go round counter-clockwise in (j, k)
@@ -116,6 +109,23 @@ std::vector<Crossing> findCrossings(const LabelledWalls& walls, const ImageGeome
     });
     return all;
 }
+
+/// Passes the crossings of lines in their order.
+class Walk {
+public:
+    Walk(const std::vector<Crossing>& crossings, int64_t firstLine)
+        : next_(std::ranges::lower_bound(crossings, firstLine, {}, &Crossing::line)),
+          end_(crossings.end()) {}
+
+    /// Calls `pass` for those of `line` up to the centre i that were not passed.
+    template <class Pass>
+    void to(int64_t line, int64_t i, const Pass& pass) {
+        for (; next_ != end_ && next_->line == line && next_->first <= i; ++next_) pass(*next_);
+    }
+
+private:
+    std::vector<Crossing>::const_iterator next_, end_;
+};
 
 /// Entries minus exits of each region, without zeros.
 class Depths {
@@ -178,23 +188,16 @@ MislabelledCentres findMislabelledCentres(const LabelledWalls& walls, const Volu
     dispatchPixelType(map, [&](const auto& view) {
         parallelForPieces(size[2], 1, [&](int64_t k, int64_t) {
             MislabelledCentres& found = layers[k];
-            auto crossing = std::lower_bound(
-                crossings.begin(), crossings.end(), k * size[1],
-                [](const Crossing& each, int64_t line) { return each.line < line; });
+            Walk walk(crossings, k * size[1]);
             Depths depths(regions);
             for (int64_t j = 0; j < size[1]; ++j) {
                 depths.clear();
                 for (int64_t i = 0; i < size[0]; ++i) {
-                    for (; crossing != crossings.end() && crossing->line == j + k * size[1] &&
-                           crossing->first <= i;
-                         ++crossing) {
-                        depths.pass(*crossing);
-                    }
+                    walk.to(j + k * size[1], i, [&](const Crossing& each) { depths.pass(each); });
                     if (depths.areOf(static_cast<int32_t>(view.at(i, j, k)))) continue;
                     if (found.count++ == 0) found.first = Index3{i, j, k};
                 }
-                // what lies behind the last centre
-                while (crossing != crossings.end() && crossing->line == j + k * size[1]) ++crossing;
+                walk.to(j + k * size[1], size[0], [](const Crossing&) {});
             }
         });
     });
@@ -202,6 +205,39 @@ MislabelledCentres findMislabelledCentres(const LabelledWalls& walls, const Volu
     for (const MislabelledCentres& layer : layers) {
         if (!all.first) all.first = layer.first;
         all.count += layer.count;
+    }
+    return all;
+}
+
+VoxelOverlap voxelOverlap(const TriangleMesh& a, const TriangleMesh& b,
+                          const ImageGeometry& image) {
+    const auto crossingsOf = [&](const TriangleMesh& mesh) {
+        const std::vector<std::array<int32_t, 2>> labels(mesh.triangles.size());
+        return findCrossings({mesh.points, mesh.triangles, labels}, image);
+    };
+    const std::vector<Crossing> ofA = crossingsOf(a), ofB = crossingsOf(b);
+    const Index3& size = image.size;
+    std::vector<VoxelOverlap> layers(static_cast<std::size_t>(size[2]));
+    parallelForPieces(size[2], 1, [&](int64_t k, int64_t) {
+        VoxelOverlap& found = layers[k];
+        Walk walkA(ofA, k * size[1]), walkB(ofB, k * size[1]);
+        for (int64_t line = k * size[1]; line < (k + 1) * size[1]; ++line) {
+            bool isInA = false, isInB = false;
+            for (int64_t i = 0; i <= size[0]; ++i) {  // the last: what lies behind all centres
+                walkA.to(line, i, [&](const Crossing&) { isInA = !isInA; });
+                walkB.to(line, i, [&](const Crossing&) { isInB = !isInB; });
+                if (i == size[0]) continue;
+                found.voxelsA += isInA;
+                found.voxelsB += isInB;
+                found.voxelsBoth += isInA && isInB;
+            }
+        }
+    });
+    VoxelOverlap all;
+    for (const VoxelOverlap& layer : layers) {
+        all.voxelsA += layer.voxelsA;
+        all.voxelsB += layer.voxelsB;
+        all.voxelsBoth += layer.voxelsBoth;
     }
     return all;
 }

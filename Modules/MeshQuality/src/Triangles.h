@@ -40,6 +40,10 @@ inline bool areFinite(const Corners& corners) {
                        [](const Vec3& p) { return std::isfinite(p.x + p.y + p.z); });
 }
 
+/// Where `p` lies of the line from -> to: 1 left, -1 right, never 0. Ties are broken by moving p by
+/// (e^2, e), e infinitely small; 0 only where from and to are one point.
+int perturbedSide(const Point2& p, const Point2& from, const Point2& to);
+
 /// A ray along an axis.
 struct Ray {
     int axis;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "Triangles.h"
@@ -22,13 +23,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// For each start the pieces that lie around it, ascending: those that a ray from it passes an odd
 /// number of times. Rays are found by the cells of a grid across them.
-/// \param starts   of each piece, one of its points
 /// \param pieceOf  of a triangle; kNone: it is not there
-template <class CornersOf, class PieceOf>
+/// \param matters  of a start and a piece: whether to look at it
+template <class CornersOf, class PieceOf, class Matters>
 std::vector<std::vector<std::uint32_t>> piecesAround(const std::vector<Vec3>& starts,
                                                      std::int64_t triangleCount,
                                                      const CornersOf& cornersAt,
-                                                     const PieceOf& pieceOf) {
+                                                     const PieceOf& pieceOf,
+                                                     const Matters& matters) {
     constexpr Ray kRay{0, 1};
     BoundingBox box = BoundingBox::empty();
     for (const Vec3& p : starts) box.add(p);
@@ -61,7 +63,8 @@ std::vector<std::vector<std::uint32_t>> piecesAround(const std::vector<Vec3>& st
                 const auto first = side * z + cellAt(around.minimum, 1),
                            last = side * z + cellAt(around.maximum, 1);
                 for (const std::uint32_t ray : rays.of(first, last + 1)) {
-                    if (ray == piece || !around.overlaps(boxOf(starts[ray], kRay))) continue;
+                    if (!around.overlaps(boxOf(starts[ray], kRay)) || !matters(ray, piece))
+                        continue;
                     if (!hitOf(starts[ray], kRay, corners).crosses) continue;
                     ofGrain[begin / kGrain].push_back({ray, piece});
                 }
@@ -120,6 +123,15 @@ private:
 
 }  // namespace
 
+std::vector<std::vector<std::uint32_t>> findPiecesAround(
+    const TriangleMesh& mesh, const std::vector<std::int64_t>& pieceOf,
+    const std::vector<Vec3>& points, const std::function<bool(std::size_t, std::size_t)>& matters) {
+    return piecesAround(
+        points, std::ssize(mesh.triangles), [&](std::int64_t t) { return cornersOf(mesh, t); },
+        [&](std::int64_t t) { return static_cast<std::uint32_t>(pieceOf[mesh.triangles[t][0]]); },
+        matters);
+}
+
 std::vector<std::int64_t> findInsideOutPieces(const TriangleMesh& mesh,
                                               const TopologyReport& topology) {
     if (!topology.isWatertight() || topology.count(TopologyDefect::NonFiniteVertex) > 0) {
@@ -140,7 +152,7 @@ std::vector<std::int64_t> findInsideOutPieces(const TriangleMesh& mesh,
         for (std::size_t v = 0; v < roots.size(); ++v) pieceOf[v] = pieceOf[roots[v]];
         auto around = piecesAround(
             starts, std::ssize(mesh.triangles), [&](std::int64_t t) { return cornersOf(mesh, t); },
-            [&](std::int64_t t) { return pieceOf[mesh.triangles[t][0]]; });
+            [&](std::int64_t t) { return pieceOf[mesh.triangles[t][0]]; }, std::not_equal_to<>());
         const bool mayCross = std::any_of(around.begin(), around.end(),
                                           [](const auto& pieces) { return !pieces.empty(); });
         if (mayCross) {
@@ -195,7 +207,8 @@ InsideOutPieces findInsideOutPieces(const TriangleView& surface,
     }
     const auto around = piecesAround(
         starts, std::ssize(surface.triangles),
-        [&](std::int64_t t) { return surface.cornersOf(static_cast<std::size_t>(t)); }, pieceAt);
+        [&](std::int64_t t) { return surface.cornersOf(static_cast<std::size_t>(t)); }, pieceAt,
+        std::not_equal_to<>());
     InsideOutPieces result;
     std::vector<std::uint8_t> isWrong(starts.size());
     for (std::size_t n = 0; n < starts.size(); ++n) {

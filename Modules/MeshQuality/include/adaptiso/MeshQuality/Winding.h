@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
@@ -8,6 +9,16 @@
 #include "adaptiso/MeshQuality/TriangleTree.h"
 
 namespace adaptiso {
+
+/// For each point the closed pieces around it, ascending: those that a ray from it passes an odd
+/// number of times, decided exactly.
+/// \param pieceOf  of each vertex
+/// \param matters  of a point's number and a piece's: whether to look at it; called in parallel
+/// \pre coordinates are finite, triangles name points that are there
+/// Cost: O(T) and a ray for each point, which looks at the triangles beside it; in parallel.
+std::vector<std::vector<std::uint32_t>> findPiecesAround(
+    const TriangleMesh& mesh, const std::vector<std::int64_t>& pieceOf,
+    const std::vector<Vec3>& points, const std::function<bool(std::size_t, std::size_t)>& matters);
 
 /// The pieces of a closed, oriented surface whose triangles are the wrong way round, as numbers
 /// into topology.components.
