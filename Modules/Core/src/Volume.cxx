@@ -28,49 +28,14 @@ void requireNoNeedles(const ImageGeometry& geometry) {
 }
 
 std::string_view toString(PixelType type) {
-    switch (type) {
-        case PixelType::UInt8:
-            return "uint8";
-        case PixelType::Int8:
-            return "int8";
-        case PixelType::UInt16:
-            return "uint16";
-        case PixelType::Int16:
-            return "int16";
-        case PixelType::UInt32:
-            return "uint32";
-        case PixelType::Int32:
-            return "int32";
-        case PixelType::UInt64:
-            return "uint64";
-        case PixelType::Int64:
-            return "int64";
-        case PixelType::Float32:
-            return "float32";
-        case PixelType::Float64:
-            return "float64";
-    }
-    return "unknown";
+    constexpr const char* kWords[] = {"uint8", "int8",   "uint16", "int16",   "uint32",
+                                      "int32", "uint64", "int64",  "float32", "float64"};
+    return kWords[static_cast<std::size_t>(type)];
 }
 
 std::size_t bytesPerPixel(PixelType type) {
-    switch (type) {
-        case PixelType::UInt8:
-        case PixelType::Int8:
-            return 1;
-        case PixelType::UInt16:
-        case PixelType::Int16:
-            return 2;
-        case PixelType::UInt32:
-        case PixelType::Int32:
-        case PixelType::Float32:
-            return 4;
-        case PixelType::UInt64:
-        case PixelType::Int64:
-        case PixelType::Float64:
-            return 8;
-    }
-    return 0;
+    constexpr std::size_t kBytes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+    return kBytes[static_cast<std::size_t>(type)];
 }
 
 VolumeView::VolumeView(const void* samples, PixelType type, const ImageGeometry& geometry)

@@ -17,19 +17,8 @@
 namespace adaptiso {
 
 std::string_view toString(Method method) {
-    switch (method) {
-        case Method::Adaptive:
-            return "adaptive";
-        case Method::Boxes:
-            return "boxes";
-        case Method::DiscretizedMarchingCubes:
-            return "dmc";
-        case Method::SkeletonClimbing:
-            return "asc";
-        case Method::MarchingCubes:
-            return "mc";
-    }
-    return "unknown";
+    constexpr const char* kWords[] = {"adaptive", "boxes", "dmc", "asc", "mc"};
+    return kWords[static_cast<std::size_t>(method)];
 }
 
 namespace {

@@ -5,17 +5,8 @@
 namespace adaptiso {
 
 std::string_view frameWord(CoordinateFrame frame) {
-    switch (frame) {
-        case CoordinateFrame::Ras:
-            return "ras";
-        case CoordinateFrame::Lps:
-            return "lps";
-        case CoordinateFrame::TkRas:
-            return "tkras";
-        case CoordinateFrame::Voxel:
-            return "voxel";
-    }
-    throw InternalError("frameWord: unknown coordinate frame");
+    constexpr const char* kWords[] = {"ras", "lps", "tkras", "voxel"};
+    return kWords[static_cast<std::size_t>(frame)];
 }
 
 Json geometryJson(const ImageGeometry& geometry) {

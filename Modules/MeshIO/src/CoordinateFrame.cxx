@@ -19,17 +19,8 @@ constexpr std::string_view kMarker = "CoordinateFrame: ";
 }  // namespace
 
 std::string_view toString(CoordinateFrame frame) {
-    switch (frame) {
-        case CoordinateFrame::Ras:
-            return "RAS mm";
-        case CoordinateFrame::Lps:
-            return "LPS mm";
-        case CoordinateFrame::TkRas:
-            return "tkRAS mm";
-        case CoordinateFrame::Voxel:
-            return "voxel indices";
-    }
-    return "unknown";
+    constexpr const char* kWords[] = {"RAS mm", "LPS mm", "tkRAS mm", "voxel indices"};
+    return kWords[static_cast<std::size_t>(frame)];
 }
 
 std::string frameMarker(CoordinateFrame frame) {

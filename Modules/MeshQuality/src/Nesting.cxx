@@ -192,23 +192,9 @@ NestingRelation relationOf(const NestingReport& report) {
 }  // namespace
 
 std::string_view toString(NestingRelation relation) {
-    switch (relation) {
-        case NestingRelation::Nested:
-            return "nested";
-        case NestingRelation::Crossing:
-            return "crossing";
-        case NestingRelation::Identical:
-            return "identical";
-        case NestingRelation::Swapped:
-            return "swapped";
-        case NestingRelation::Apart:
-            return "apart";
-        case NestingRelation::Mixed:
-            return "mixed";
-        case NestingRelation::Unknown:
-            break;
-    }
-    return "unknown";
+    constexpr const char* kWords[] = {"nested", "crossing", "identical", "swapped",
+                                      "apart",  "mixed",    "unknown"};
+    return kWords[static_cast<std::size_t>(relation)];
 }
 
 NestingReport checkNesting(const TriangleMesh& innerMesh, const TriangleMesh& outerMesh,

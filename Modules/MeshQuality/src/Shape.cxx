@@ -104,15 +104,8 @@ SizeVerdict judge(const Vec3& extent, const SizeLimits& limits) {
 }  // namespace
 
 std::string_view toString(LengthUnit unit) {
-    switch (unit) {
-        case LengthUnit::Metres:
-            return "metres";
-        case LengthUnit::Centimetres:
-            return "centimetres";
-        case LengthUnit::Micrometres:
-            return "micrometres";
-    }
-    return "unknown";
+    constexpr const char* kWords[] = {"metres", "centimetres", "micrometres"};
+    return kWords[static_cast<std::size_t>(unit)];
 }
 
 SizeReport judgeSize(const TriangleMesh& mesh, const SizeLimits& limits) {

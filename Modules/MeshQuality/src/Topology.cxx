@@ -394,27 +394,11 @@ void inspect(const TriangleMesh& mesh, const TopologyOptions& options, TopologyR
 }  // namespace
 
 std::string_view toString(TopologyDefect defect) {
-    switch (defect) {
-        case TopologyDefect::BoundaryEdge:
-            return "boundary edge";
-        case TopologyDefect::NonManifoldEdge:
-            return "non-manifold edge";
-        case TopologyDefect::InconsistentEdge:
-            return "inconsistently oriented edge";
-        case TopologyDefect::NonManifoldVertex:
-            return "non-manifold vertex";
-        case TopologyDefect::DegenerateTriangle:
-            return "degenerate triangle";
-        case TopologyDefect::DuplicateTriangle:
-            return "duplicate triangle";
-        case TopologyDefect::UnusedVertex:
-            return "unused vertex";
-        case TopologyDefect::NonFiniteVertex:
-            return "non-finite vertex";
-        case TopologyDefect::IndexOutOfRange:
-            return "index out of range";
-    }
-    return "unknown";
+    constexpr const char* kWords[] = {
+        "boundary edge",       "non-manifold edge",   "inconsistently oriented edge",
+        "non-manifold vertex", "degenerate triangle", "duplicate triangle",
+        "unused vertex",       "non-finite vertex",   "index out of range"};
+    return kWords[static_cast<std::size_t>(defect)];
 }
 
 std::vector<VertexId> findComponentRoots(const TriangleMesh& mesh) {

@@ -202,15 +202,8 @@ double halfSpanMm(const ImageGeometry& geometry, const Vec3& axis) {
 }  // namespace
 
 std::string_view toString(Interpolation interpolation) {
-    switch (interpolation) {
-        case Interpolation::Nearest:
-            return "nearest";
-        case Interpolation::Linear:
-            return "linear";
-        case Interpolation::BSpline:
-            return "bspline";
-    }
-    throw InternalError("toString: unknown interpolation");
+    constexpr const char* kWords[] = {"nearest", "linear", "bspline"};
+    return kWords[static_cast<std::size_t>(interpolation)];
 }
 
 ImageGeometry isotropicGrid(const ImageGeometry& geometry, double stepMm) {

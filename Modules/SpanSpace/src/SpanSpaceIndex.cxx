@@ -77,15 +77,8 @@ std::unique_ptr<const BlockSearch<T>> makeSearch(BlockRanges<T> ranges, const Bl
 }  // namespace
 
 std::string_view toString(BlockSearchKind kind) {
-    switch (kind) {
-        case BlockSearchKind::KdTree:
-            return "kdtree";
-        case BlockSearchKind::Octree:
-            return "octree";
-        case BlockSearchKind::Linear:
-            return "linear";
-    }
-    throw InternalError("toString: unknown kind of search");
+    constexpr const char* kWords[] = {"kdtree", "octree", "linear"};
+    return kWords[static_cast<std::size_t>(kind)];
 }
 
 SpanSpaceIndex::SpanSpaceIndex(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -5,8 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include "adaptiso/Core/Errors.h"
-
 namespace adaptiso {
 
 namespace {
@@ -14,15 +12,8 @@ namespace {
 constexpr std::size_t kMaxComponents = 100;
 
 std::string_view outcomeWord(Outcome outcome) {
-    switch (outcome) {
-        case Outcome::Passed:
-            return "passed";
-        case Outcome::Failed:
-            return "failed";
-        case Outcome::Undecided:
-            return "undecided";
-    }
-    throw InternalError("outcomeWord: unknown outcome");
+    constexpr const char* kWords[] = {"passed", "failed", "undecided"};
+    return kWords[static_cast<std::size_t>(outcome)];
 }
 
 Json checksJson(const std::vector<Check>& checks) {
@@ -147,17 +138,8 @@ Json spreadJson(const Spread& spread) {
 }
 
 std::string_view sizeWord(SizeVerdict verdict) {
-    switch (verdict) {
-        case SizeVerdict::Plausible:
-            return "plausible";
-        case SizeVerdict::TooSmall:
-            return "tooSmall";
-        case SizeVerdict::TooLarge:
-            return "tooLarge";
-        case SizeVerdict::Unknown:
-            return "unknown";
-    }
-    throw InternalError("sizeWord: unknown verdict");
+    constexpr const char* kWords[] = {"plausible", "tooSmall", "tooLarge", "unknown"};
+    return kWords[static_cast<std::size_t>(verdict)];
 }
 
 Json sizeJson(const SizeReport& size) {

@@ -388,15 +388,8 @@ std::string relationText(const NestingReport& report, const std::string& inner,
 }  // namespace
 
 std::string_view toString(Profile profile) {
-    switch (profile) {
-        case Profile::Bem:
-            return "bem";
-        case Profile::Print:
-            return "print";
-        case Profile::View:
-            return "view";
-    }
-    throw InternalError("toString: unknown profile");
+    constexpr const char* kWords[] = {"bem", "print", "view"};
+    return kWords[static_cast<std::size_t>(profile)];
 }
 
 SizeLimits sizeLimitsOf(Profile profile) {
