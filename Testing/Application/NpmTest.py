@@ -26,9 +26,34 @@ TESTS = ("BemElectrodesTest", "BemSurfacesTest", "BemTest", "BemTetrahedraTest",
 
 #: Tests that the package cannot pass, by the reason; "CheckTest" or "CheckTest.Truth" stands for all of it.
 LEFT_OUT = {
-    "no resampling": (),
-    "no pictures and HTML reports": (),
-    "no child processes": (),
+    "no resampling": (
+        "CheckTest.Truth.test_isosurface_of_a_preprocessed_volume", "InfoTest.Info.test_the_image_is_told_as_preprocessed",
+        "WordsTest.WrongCommandLines.test_get_one_line_that_helps"),
+    "no pictures and HTML reports": (
+        "BemElectrodesTest.Electrodes.test_a_page_shows_them",
+        "BemSurfacesTest.Surfaces.test_what_cannot_be_guaranteed_gives_the_report_alone_and_says_where",
+        "CheckNotesTest.Notes.test_text_and_page_tell_them_and_quiet_does_not", "CheckTest.Readme.test_examples_run",
+        "CompareTest.Readme.test_examples_run", "InfoTest.Info.test_ends_with_commands_that_make_surfaces_of_this_input",
+        "LabelsTest.OutputTest.test_another_image_behind_the_regions", "LabelsTest.OutputTest.test_report_page",
+        "SimplifyTest.Reports.test_a_page_tells_what_was_read_from_what_was_written", "SimplifyTest.Reports.test_pages",
+        "SimplifyTest.Reports.test_keys_are_the_documented_ones",
+        "WarningsTest.Warnings.test_strict_writes_reports_and_no_surface"),
+    "no batches, which are child processes": (
+        "LabelsTest.BatchTest.test_many_inputs", "MistakesTest.Batches",
+        "MistakesTest.Reports.test_of_batches_are_alike_for_each_input",
+        "MistakesTest.Resources.test_one_thread_where_no_process_may_start",
+        "SimplifyDataTest.FreeSurfer.test_in_a_batch_each_has_its_own", "SimplifyTest.Batches",
+        "WarningsTest.Allowed.test_batches_hand_them_on", "WarningsTest.Batches"),
+    "no MATLAB files": ("BemElectrodesTest.Electrodes.test_brainstorms_coordinates",),
+    "no ITK and oneTBB": ("CommandLineTest.Help.test_version_names_the_libraries",),
+    "runs adaptiso-bids and adaptiso-giant too": (
+        "CommandLineTest.Help.test_h_is_one_screen_with_every_option",
+        "CommandLineTest.Help.test_readmes_name_the_options_of_every_program",
+        "CommandLineTest.Help.test_version_has_the_same_letter_in_every_program",
+        "CommandLineTest.OneCommand.test_starts_each_program", "MistakesTest.Mistakes.test_a_folder_in_a_files_place",
+        "MistakesTest.Mistakes.test_a_pipe_in_a_files_place", "MistakesTest.Mistakes.test_an_input_that_is_not_there",
+        "MistakesTest.Mistakes.test_an_output_whose_name_is_taken", "MistakesTest.Mistakes.test_no_input",
+        "MistakesTest.Mistakes.test_unknown_and_incomplete_options", "MistakesTest.Reports.test_of_runs_that_pass_begin_alike"),
 }
 
 #: Fewer that pass are a failure: a package that is not tried must not look tried.
@@ -41,6 +66,15 @@ def cases(suite):
             yield from cases(part)
         else:
             yield part
+
+
+class Result(unittest.TextTestResult):
+    """Counts tests that pass as a whole; failed subtests are many for one test."""
+    passed = 0
+
+    def addSuccess(self, test):
+        super().addSuccess(test)
+        self.passed += 1
 
 
 def write_launchers(folder):
@@ -69,10 +103,9 @@ def main(files):
                 suite.addTest(case)
             else:
                 print(f"left out: {case.id()}: {reason}", file=sys.stderr)
-        result = unittest.TextTestRunner(verbosity=2).run(suite)
-    passed = result.testsRun - len(result.failures) - len(result.errors) - len(result.skipped)
-    print(f"{passed} tests passed on the npm package, {len(every) - suite.countTestCases()} left out", file=sys.stderr)
-    return 0 if result.wasSuccessful() and (files or passed >= FEWEST) else 1
+        result = unittest.TextTestRunner(verbosity=2, resultclass=Result).run(suite)
+    print(f"{result.passed} tests passed on the npm package, {len(every) - suite.countTestCases()} left out", file=sys.stderr)
+    return 0 if result.wasSuccessful() and (files or result.passed >= FEWEST) else 1
 
 
 if __name__ == "__main__":
