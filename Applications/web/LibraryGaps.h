@@ -59,24 +59,6 @@ private:
 template <class T>
 atomic_ref(T&) -> atomic_ref<T>;
 
-// ---- <source_location>
-
-struct source_location {
-    static constexpr source_location current(const char* file = __builtin_FILE(),
-                                             uint_least32_t line = __builtin_LINE()) {
-        source_location here;
-        here.file_ = file;
-        here.line_ = line;
-        return here;
-    }
-    constexpr const char* file_name() const { return file_; }
-    constexpr uint_least32_t line() const { return line_; }
-
-private:
-    const char* file_ = "";
-    uint_least32_t line_ = 0;
-};
-
 // ---- <charconv> of doubles and floats. fmt finds the digits; their layout is the standard's:
 // printf's.
 

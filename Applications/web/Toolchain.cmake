@@ -14,7 +14,6 @@ foreach(library CLI fmt nlohmann)
     endif()
     file(CREATE_LINK /usr/include/${library} ${headers}/${library} SYMBOLIC)
 endforeach()
-file(WRITE ${headers}/source_location "")  # in LibraryGaps.h
 include_directories(SYSTEM ${headers})
 foreach(target CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json)
     add_library(${target} INTERFACE IMPORTED GLOBAL)

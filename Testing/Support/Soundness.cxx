@@ -384,12 +384,10 @@ SoundnessOptions openOnlyAtBorder(const ImageGeometry& geometry) {
     return findings.result(mesh);
 }
 
-void expectSound(const TriangleMesh& mesh, const SoundnessOptions& options,
-                 const std::source_location& where) {
+void expectSound(const TriangleMesh& mesh, const SoundnessOptions& options, const char* file,
+                 int line) {
     const ::testing::AssertionResult result = isSound(mesh, options);
-    if (!result) {
-        ADD_FAILURE_AT(where.file_name(), static_cast<int>(where.line())) << result.message();
-    }
+    if (!result) ADD_FAILURE_AT(file, line) << result.message();
 }
 
 }  // namespace adaptiso::testing

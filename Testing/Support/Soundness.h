@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <optional>
-#include <source_location>
 #include <string>
 
 #include "adaptiso/Core/ImageGeometry.h"
@@ -45,6 +44,6 @@ SoundnessOptions openOnlyAtBorder(const ImageGeometry& geometry);
 
 /// EXPECT_TRUE(isSound(mesh, options)), reported at the caller's line.
 void expectSound(const TriangleMesh& mesh, const SoundnessOptions& options = {},
-                 const std::source_location& where = std::source_location::current());
+                 const char* file = __builtin_FILE(), int line = __builtin_LINE());
 
 }  // namespace adaptiso::testing
