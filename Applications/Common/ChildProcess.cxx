@@ -91,6 +91,9 @@ Child start(const std::string& program, std::size_t number, std::vector<std::str
     const detail::SignalsWait untilItIsKnown;
     const pid_t parent = getpid();
     const pid_t process = fork();
+    if (process < 0 && errno == ENOSYS) {  // WebAssembly
+        throw InvalidInput("this build starts no other programs; use the native ones");
+    }
     if (process < 0) throw std::system_error(errno, std::generic_category(), "fork");
     if (process == 0) {
         becomeProgram(parent, program.c_str(), pointers.data(), folder.c_str(), out[1].get(),
