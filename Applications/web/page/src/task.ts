@@ -93,8 +93,12 @@ export class Task {
   }
 
   private setRunning(isRunning: boolean): void {
-    this.part<HTMLButtonElement>(".go").disabled = isRunning;
-    this.part<HTMLButtonElement>(".cancel").hidden = !isRunning;
+    const go = this.part<HTMLButtonElement>(".go"), cancel = this.part<HTMLButtonElement>(".cancel");
+    const [from, to] = isRunning ? [go, cancel] : [cancel, go], hasFocus = document.activeElement === from;
+    to.hidden = to.disabled = false;
+    if (hasFocus) to.focus();  // a button that goes would take it along
+    go.disabled = isRunning;
+    cancel.hidden = !isRunning;
     document.body.dataset.running = isRunning ? this.id : "";
   }
 

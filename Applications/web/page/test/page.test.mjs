@@ -6,8 +6,8 @@ import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { gzipSync } from "node:zlib";
 import validator from "gltf-validator";
-import { balls, dicomSlice, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved, textOf,
-  writeNifti } from "./support.mjs";
+import { arrived, balls, dicomSlice, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved,
+  textOf, writeNifti } from "./support.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
@@ -342,17 +342,63 @@ for (const browserName of kBrowsers) {
       await page.setViewport({ width: 1280, height: 900 });
     });
 
-    it("is used by the keyboard alone", async () => {
+    it("is used by the keyboard alone", { timeout: 200_000 }, async () => {
+      const { keyboard } = page, isFocused = (selector) => page.evaluate((text) => document.activeElement.matches(text), selector);
+      const tabTo = async (selector) => {
+        for (let n = 0; n < 40 && !await isFocused(selector); ++n) await keyboard.press("Tab");
+        assert.ok(await isFocused(selector), `Tab does not reach ${selector}`);
+      };
       await page.focus("#tab-mesh");
-      await page.keyboard.press("ArrowRight");
-      assert.equal(await page.evaluate(() => document.activeElement.id), "tab-head");
+      await keyboard.press("ArrowRight");
+      assert.ok(await isFocused("#tab-head"));
       assert.equal(await page.$eval("#head", (element) => element.hidden), false);
-      await page.keyboard.press("Home");
+      await keyboard.press("Home");
       assert.equal(await page.$eval("#mesh", (element) => element.hidden), false);
-      await page.focus("#example");
-      await page.keyboard.press("Enter");
+
+      await tabTo("#scan-files");
+      await page.evaluate(() => { delete document.body.dataset.scan; });
+      const [chooser] = await Promise.all([page.waitForFileChooser(), keyboard.press(" ")]);
+      await chooser.accept([join(folder, "large.nii")]);
+      await page.waitForFunction(() => document.body.dataset.scan === "large.nii", { timeout: 60_000 });
+      await tabTo("#iso-slider");
+      const before = await page.$eval("#iso", (input) => Number(input.value));
+      await keyboard.press("ArrowRight");
+      assert.ok(await page.$eval("#iso", (input) => Number(input.value)) > before);
+      await tabTo("#auto");
+      await keyboard.press("Enter");
+      assert.equal(await page.$eval("#iso", (input) => Number(input.value)), before);
+      await tabTo("#by-distance");
+      await keyboard.press("ArrowDown");
+      assert.ok(await page.$eval("#by-count", (input) => input.checked));
+      await tabTo("#triangles");
+      await keyboard.type("4000");
+      await tabTo("#largest");
+      await keyboard.press(" ");
+      await tabTo("#format");
+      await keyboard.type("PLY");
+      await tabTo("#mesh .go");
+      await keyboard.press("Enter");
       await page.waitForFunction(() => document.body.dataset.running === "mesh", { timeout: 60_000 });
+      assert.ok(await isFocused("#mesh .cancel"), "a run's Cancel has the focus of the button that started it");
+      await keyboard.press("Enter");
+      assert.equal(await ended(page, "mesh"), "Cancelled.");
+      assert.ok(await isFocused("#mesh .go"));
+
+      await page.focus("#tab-mesh");
+      await tabTo("#example");
+      await keyboard.press("Enter");
+      await page.waitForFunction(() => document.body.dataset.scan === "example.nii" && document.body.dataset.running === "mesh", { timeout: 60_000 });
       assert.equal(await ended(page, "mesh"), "");
+      await tabTo("#mesh .saves .main");
+      await keyboard.press("Enter");
+      assert.match((await arrived(open.downloads, "example.ply")).toString("latin1", 0, 3), /ply/);
+      await tabTo("#mesh .copy button");
+      await keyboard.press("Enter");
+      await page.waitForFunction(() => /Copied|Select/.test(document.querySelector("#mesh .copy button").textContent));
+      await tabTo("#gl");
+      const place = await textOf(page, "#position");
+      await keyboard.press("ArrowUp");
+      await page.waitForFunction((text) => document.querySelector("#position").textContent !== text, {}, place);
     });
   });
 }

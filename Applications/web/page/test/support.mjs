@@ -20,7 +20,7 @@ export async function openPage(browserName, { width = 1280, height = 900, isDark
     protocolTimeout: 600_000, timeout: 120_000,
     args: browserName === "chrome" ? ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] : [],
     extraPrefsFirefox: { "browser.download.folderList": 2, "browser.download.dir": downloads,
-      "browser.download.useDownloadDir": true, "browser.helperApps.neverAsk.saveToDisk": "application/octet-stream",
+      "browser.download.useDownloadDir": true, "browser.download.alwaysOpenPanel": false,  // which takes the focus "browser.helperApps.neverAsk.saveToDisk": "application/octet-stream",
       "webgl.force-enabled": true },
     ...(browserName === "chrome" ? { downloadBehavior: { policy: "allow", downloadPath: downloads } } : {}) });
   const page = await browser.newPage();
@@ -55,9 +55,14 @@ export const textOf = (page, selector) => page.$eval(selector, (element) => elem
 
 /** The file that a button saves. */
 export async function saved(page, downloads, selector, name) {
-  const path = join(downloads, name);
-  rmSync(path, { force: true });
+  rmSync(join(downloads, name), { force: true });
   await press(page, selector);
+  return arrived(downloads, name);
+}
+
+/** Waits for a download. */
+export async function arrived(downloads, name) {
+  const path = join(downloads, name);
   for (let n = 0; n < 300; ++n) {
     if (existsSync(path) && !existsSync(`${path}.part`) && !existsSync(`${path}.crdownload`)) {
       const bytes = readFileSync(path);
