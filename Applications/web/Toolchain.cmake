@@ -6,6 +6,12 @@ add_link_options(-fwasm-exceptions)
 # No signal and no second thread interrupts a run.
 set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
 
+# what this file defines is found
+set(CMAKE_MODULE_PATH ${PROJECT_BINARY_DIR}/found)
+foreach(package CLI11 EXPAT ZLIB fmt nlohmann_json GTest)
+    file(WRITE ${CMAKE_MODULE_PATH}/Find${package}.cmake "set(${package}_FOUND TRUE)\n")
+endforeach()
+
 set(headers ${PROJECT_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${headers})
 foreach(library CLI fmt nlohmann)
@@ -57,3 +63,15 @@ target_compile_options(expat PRIVATE -w)
 file(WRITE ${PROJECT_BINARY_DIR}/sources/expat_config.h "")
 target_include_directories(expat PRIVATE ${PROJECT_BINARY_DIR}/sources)
 add_library(EXPAT::EXPAT ALIAS expat)
+
+# The tests run under Node, on its files. --no-experimental-fetch: Emscripten 3.1.6 would fetch the
+# program's own file.
+set(CMAKE_CROSSCOMPILING_EMULATOR node --no-experimental-fetch)
+set(googletest /usr/src/googletest/googletest)
+add_library(gtest STATIC EXCLUDE_FROM_ALL ${googletest}/src/gtest-all.cc)
+add_library(gtest_main STATIC EXCLUDE_FROM_ALL ${googletest}/src/gtest_main.cc)
+target_include_directories(gtest SYSTEM PUBLIC ${googletest}/include PRIVATE ${googletest})
+target_compile_definitions(gtest PUBLIC GTEST_HAS_PTHREAD=0)
+target_link_libraries(gtest_main PUBLIC gtest)
+add_library(GTest::gtest ALIAS gtest)
+add_library(GTest::gtest_main ALIAS gtest_main)

@@ -114,7 +114,8 @@ void checkTriangles(const TriangleMesh& mesh, Findings& findings) {
     std::vector<std::pair<Triangle, std::size_t>> sorted;
     sorted.reserve(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        auto [a, b, c] = mesh.triangles[t];
+        const auto& corners = mesh.triangles[t];
+        const VertexId a = corners[0], b = corners[1], c = corners[2];
         if (hasNoArea(mesh.points[a], mesh.points[b], mesh.points[c])) {
             findings.add("triangle without area", [&](std::ostream& out) {
                 out << "triangle " << t << ": " << Point{mesh, a} << ", " << Point{mesh, b} << ", "

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <atomic>
 #include <utility>
@@ -24,7 +23,7 @@ TEST(Parallel, PiecesCoverAllOnce) {
 
 TEST(Parallel, LargestComeFirst) {
     const std::vector<std::int64_t> sizes{3, 0, 9, 3, 12, 1};
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const ThreadLimitGuard one(1);
     std::vector<std::int64_t> order;
     parallelLargestFirst(sizes, [&](std::int64_t n) { order.push_back(n); });
     EXPECT_EQ(order, (std::vector<std::int64_t>{4, 2, 0, 3, 5, 1}));

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include "RandomVolumes.h"
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -258,7 +258,7 @@ TEST(AdaptiveMethod, GivesTheSameBytesWhateverTheThreads) {
     AdaptiveOptions adaptive;
     adaptive.maxTriangles = 5000;
     const Extraction many = extractWith(volume, 0, adaptive);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const ThreadLimitGuard one(1);
     EXPECT_EQ(many.mesh, extractWith(volume, 0, adaptive).mesh);
 }
 

@@ -1,7 +1,6 @@
 // simplify(): truth known on paper, then random meshes, whole and broken on purpose. Nothing here
 // shares code with what simplifies.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +18,7 @@
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
@@ -517,8 +517,8 @@ TEST(Simplify, TakesTrianglesOfManySizes) {
 TEST(Simplify, GivesTheSameBytesForAnyNumberOfThreads) {
     const TriangleMesh torus = torusMesh(120, 60, 30, 10);
     const Simplified expected = simplify(torus, within(0.1));
-    for (const std::size_t threads : {1U, 3U}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    for (const int threads : {1, 3}) {
+        const ThreadLimitGuard limit(threads);
         EXPECT_EQ(simplify(torus, within(0.1)).mesh, expected.mesh);
     }
 }

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 
 #include "RandomVolumes.h"
 #include "Support/AnalyticVolumes.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso::testing {
@@ -152,7 +152,7 @@ TEST_P(SurfaceMethods, GivesTheSameBytesWhateverTheThreads) {
         sampled<std::int16_t>(torus({}, 14, 6), centredGeometry({48, 48, 24}));
     std::vector<TriangleMesh> meshes;
     for (const int threads : {1, 2, 5}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        const ThreadLimitGuard limit(threads);
         meshes.push_back(
             extractFrom(hard.volume, hard.isovalue, GetParam(), 2, Border::Closed).mesh);
         meshes.push_back(

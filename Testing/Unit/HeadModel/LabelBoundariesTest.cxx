@@ -234,7 +234,9 @@ TEST(BoundariesFromLabels, RefuseTissuesInAnotherOrderThanTheyLie) {
     EXPECT_NO_THROW(inOrder(1, 2, 3));
     for (const auto& [brain, skull, scalp] :
          {std::array{1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2}, {3, 2, 1}}) {
-        expectRefused([&] { inOrder(brain, skull, scalp); }, "named in the right order?");
+        expectRefused(
+            [&, brain = brain, skull = skull, scalp = scalp] { inOrder(brain, skull, scalp); },
+            "named in the right order?");
     }
 }
 

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <string>
@@ -10,6 +9,7 @@
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
 #include "adaptiso/HeadModel/Remesh.h"
 #include "adaptiso/MeshQuality/Nesting.h"
@@ -248,7 +248,7 @@ TEST(NestSurfaces, OneSurfaceIsNested) {
 TEST(NestSurfaces, GivesTheSameBytesWhateverTheThreads) {
     const Surfaces spheres{inner(), icosphere(4, {3, 0, 0}, 81), icosphere(4, {-2, 3, 0}, 82)};
     const Surfaces many = nestSurfaces(spheres, withGap(2)).surfaces;
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const ThreadLimitGuard one(1);
     EXPECT_EQ(nestSurfaces(spheres, withGap(2)).surfaces, many);
 }
 

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/HeadModel/Remesh.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
@@ -255,7 +255,7 @@ TEST(RemeshForBem, GivesTheSameBytesWhateverTheThreads) {
     RemeshOptions options = withVertices(500);
     options.fitMm = 0.5;
     const TriangleMesh many = remeshForBem(dense, options).mesh;
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const ThreadLimitGuard one(1);
     EXPECT_EQ(remeshForBem(dense, options).mesh, many);
 }
 

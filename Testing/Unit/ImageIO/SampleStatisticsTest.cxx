@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -7,6 +6,7 @@
 
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
 
 namespace adaptiso::testing {
@@ -50,8 +50,8 @@ TYPED_TEST(PercentilesOf, AreTheNearestRanksOfTheSortedSamples) {
         EXPECT_EQ(found[n], static_cast<double>(samples[static_cast<std::size_t>(rank) - 1]))
             << kPercents[n];
     }
-    for (const std::size_t threads : {1, 5}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    for (const int threads : {1, 5}) {
+        const ThreadLimitGuard limit(threads);
         EXPECT_EQ(percentiles(volume, kPercents), found);
     }
 }
@@ -104,8 +104,8 @@ TEST(SampleHistogram, CountsEverySampleOnce) {
 
 TEST(SampleHistogram, IsTheSameWhateverTheThreadCount) {
     const Volume noise = randomVolume<std::int16_t>({100, 100, 90}, 1000, 3);
-    const auto counts = [&](std::size_t threads) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const auto counts = [&](int threads) {
+        const ThreadLimitGuard limit(threads);
         return sampleHistogram(noise, 100, 900, 37).counts;
     };
     EXPECT_EQ(counts(1), counts(4));

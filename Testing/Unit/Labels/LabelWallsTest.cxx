@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +14,7 @@
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Labels/Labels.h"
 
 namespace adaptiso {
@@ -54,10 +54,11 @@ TEST(ExtractLabels, KeepsTheVolumeOfThinTubes) {
     // round ends of radius r at a distance of 40; thinner tubes lose some of their volume
     const Vec3 along = normalized({1, 2, 3}), middle{0.13, -0.21, 0.37};
     for (const auto& [radius, part] : std::map<double, double>{{4, 0.005}, {1.5, 0.03}}) {
-        const Map map = Map::inSpace(centredGeometry({49, 57, 61}), [&](const Vec3& p) {
-            const double t = std::clamp(dot(p - middle, along), -20.0, 20.0);
-            return norm(p - middle - t * along) < radius ? 1 : 0;
-        });
+        const Map map =
+            Map::inSpace(centredGeometry({49, 57, 61}), [&, radius = radius](const Vec3& p) {
+                const double t = std::clamp(dot(p - middle, along), -20.0, 20.0);
+                return norm(p - middle - t * along) < radius ? 1 : 0;
+            });
         const auto measures = measureRegions(extractLabels(map.view(), fullResolution()).complex);
         const double volume = std::numbers::pi * radius * radius * 40 +
                               4 * std::numbers::pi * std::pow(radius, 3) / 3;
@@ -271,7 +272,7 @@ TEST(ExtractLabels, GivesTheSameBytesForAnyNumberOfThreads) {
     const Map balls = halfBalls(15), cells = longCells(centredGeometry({200, 14, 13}), 8);
     for (const Map* of : {&map, &balls, &cells}) {
         const LabelComplex many = extractLabels(of->view(), {}).complex;
-        const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+        const ThreadLimitGuard one(1);
         EXPECT_EQ(extractLabels(of->view(), {}).complex, many);
     }
 }

@@ -298,7 +298,8 @@ TEST(HostileCounts, DecompressionBombsAreNotUnpacked) {
     };
     for (const auto& [name, bytes] : files) {
         largestRequest = 0;
-        const std::string message = messageOf<FileError>([&] { decoded(bytes, name); });
+        const std::string message =
+            messageOf<FileError>([&bytes = bytes, name = name] { decoded(bytes, name); });
         EXPECT_NE(message.find("decompression bomb"), std::string::npos) << message;
         EXPECT_LE(largestRequest, std::size_t{8} << 20) << name;
     }

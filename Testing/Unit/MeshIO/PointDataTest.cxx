@@ -153,7 +153,7 @@ TEST(PointData, ItsKindsThatAreNotReadAreToldByName) {
     for (const auto& [name, words] : {std::pair{"lh.thickness.mgz", "unpack it"},
                                       std::pair{"lh.cortex.label", "mris_label2annot"},
                                       std::pair{"S.dscalar.nii", "wb_command"}}) {
-        const std::string message = messageOf<FileError>([&] { readPointData(name); });
+        const std::string message = messageOf<FileError>([name = name] { readPointData(name); });
         EXPECT_TRUE(message.starts_with(std::string(name) + ": ")) << message;
         EXPECT_NE(message.find(words), std::string::npos) << message;
     }

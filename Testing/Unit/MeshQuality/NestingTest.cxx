@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include "Support/AnalyticVolumes.h"
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
@@ -262,8 +262,8 @@ TEST(Nesting, BrokenMeshesAreSurvived) {
 
 TEST(Nesting, IsTheSameWhateverTheNumberOfThreads) {
     const TriangleMesh inner = icosphere(5, {}, 80), outer = icosphere(5, {1, 0, 0}, 82);
-    const auto run = [&](std::size_t threads) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const auto run = [&](int threads) {
+        const ThreadLimitGuard control(threads);
         return checkNesting(inner, outer);
     };
     const NestingReport one = run(1), two = run(2);

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <limits>
@@ -9,6 +8,7 @@
 #include "Support/AnalyticVolumes.h"
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso {
@@ -310,8 +310,8 @@ TEST(SelfIntersections, NamesTheFirstPairsAndCountsAll) {
 
 TEST(SelfIntersections, AreTheSameWhateverTheNumberOfThreads) {
     const TriangleMesh mesh = testing::crossingSpheres(5);
-    const auto run = [&](std::size_t threads) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const auto run = [&](int threads) {
+        const ThreadLimitGuard control(threads);
         return findSelfIntersections(mesh, {.maxPairs = 50});
     };
     const SelfIntersections one = run(1), two = run(2);

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <numbers>
@@ -8,6 +7,7 @@
 
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 
 namespace adaptiso {
@@ -129,8 +129,8 @@ TEST(SurfaceDistance, TellsItsProgress) {
 
 TEST(SurfaceDistance, IsTheSameWhateverTheNumberOfThreads) {
     const TriangleMesh a = icosphere(4), b = icosphere(4, {0.1, 0, 0}, 1.1);
-    const auto run = [&](std::size_t threads) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const auto run = [&](int threads) {
+        const ThreadLimitGuard control(threads);
         return surfaceDistance(a, b, {.samples = 30000}).combined;
     };
     const DistanceStatistics one = run(1), two = run(2);

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +6,7 @@
 
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
@@ -220,8 +220,8 @@ TEST(Topology, AgreesWithTheIndependentSoundnessCheck) {
 TEST(Topology, IsTheSameWhateverTheNumberOfThreads) {
     TriangleMesh mesh = icosphere(6);  // 40962 vertices: several pieces of work
     mesh.triangles.erase(mesh.triangles.begin() + 1000, mesh.triangles.begin() + 2000);
-    const auto run = [&](std::size_t threads) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const auto run = [&](int threads) {
+        const ThreadLimitGuard control(threads);
         return checkTopology(mesh);
     };
     const TopologyReport one = run(1), two = run(2);

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "Grids.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso::testing {
@@ -195,8 +195,8 @@ TEST(Resample, DoesNotDependOnTheNumberOfThreads) {
             std::make_shared<Volume>(cube));
     }();
     for (const auto interpolation : {Interpolation::Nearest, kLinear, Interpolation::BSpline}) {
-        const auto bytes = [&](std::size_t threads) {
-            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        const auto bytes = [&](int threads) {
+            const ThreadLimitGuard limit(threads);
             const Volume resampled = resampleVolume(noise, 0.83, interpolation);
             const auto* first = static_cast<const char*>(resampled.view().samples());
             return std::string(first, first + resampled.view().byteCount());

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cstring>
 #include <limits>
 
 #include "Grids.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso::testing {
@@ -161,8 +161,8 @@ TEST(Smooth, OwnsItsResultHoweverNarrowTheGaussian) {
 
 TEST(Smooth, DoesNotDependOnTheNumberOfThreads) {
     const Volume noise = randomVolume<std::int16_t>({40, 30, 20}, 1000, 3);
-    const auto bytes = [&](std::size_t threads) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const auto bytes = [&](int threads) {
+        const ThreadLimitGuard limit(threads);
         const Volume smooth = smoothVolume(noise, 1.2);
         const auto* first = static_cast<const char*>(smooth.view().samples());
         return std::string(first, first + smooth.view().byteCount());
@@ -223,8 +223,8 @@ TEST(SmoothRecursively, IsNearlyTheGaussianForAnySigma) {
 
 TEST(SmoothRecursively, GivesTheSameBytesForAnyNumberOfThreads) {
     const Volume volume = randomVolume(obliqueGeometry({41, 37, 33}, {1, 1, 1}));
-    const auto inThreads = [&](std::size_t threads) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const auto inThreads = [&](int threads) {
+        const ThreadLimitGuard limit(threads);
         return smoothVolumeRecursively(volume, 1.5);
     };
     const Volume one = inThreads(1), three = inThreads(3);

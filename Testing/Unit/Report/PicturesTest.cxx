@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <limits>
 #include <set>
 
 #include "Support/AnalyticVolumes.h"
 #include "Support/Meshes.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Report/Page.h"
 
 namespace adaptiso {
@@ -69,7 +69,7 @@ TEST(Pictures, ArePngFilesWithAltTexts) {
 TEST(Pictures, AreTheSameForAnyNumberOfThreads) {
     const Example example;
     const std::vector<Picture> many = drawPictures(example.report);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const ThreadLimitGuard one(1);
     const std::vector<Picture> alone = drawPictures(example.report);
     ASSERT_EQ(many.size(), alone.size());
     for (std::size_t n = 0; n < many.size(); ++n) EXPECT_EQ(many[n].png, alone[n].png);

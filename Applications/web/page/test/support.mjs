@@ -8,7 +8,7 @@ import puppeteer from "puppeteer-core";
 
 export const kTop = resolve(import.meta.dirname ?? ".", "../../../..");
 export const kPage = process.env.ADAPTISO_PAGE ?? join(kTop, "build/web/adaptiso.html");
-const kPrograms = process.env.ADAPTISO_PROGRAMS ?? join(kTop, "build/release/bin");
+const kPrograms = process.env.ADAPTISO_BIN ?? join(kTop, "build/release/bin");
 export const kPictures = process.env.ADAPTISO_PICTURES ?? join(kTop, "build/web/pictures");
 export const kBrowsers = (process.env.ADAPTISO_BROWSERS ?? "chrome,firefox").split(",");
 const kExecutables = { chrome: "/usr/bin/chromium", firefox: "/usr/bin/firefox-esr" };
