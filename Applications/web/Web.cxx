@@ -203,6 +203,30 @@ void preview(double isovalue) {
     answer = jsonText({{"triangles", shown.triangles.size() / 3}}, -1);
 }
 
+/// Pairs of neighbouring voxels between which a surface passes: at `isovalue`, or between any two
+/// labels where it is NaN. Beyond the border is background. Memory grows with it.
+double crossedEdges(const VolumeView& volume, double isovalue) {
+    return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
+        const auto& size = view.geometry.size;
+        const auto sideOf = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
+            if (i < 0 || j < 0 || k < 0 || i == size[0] || j == size[1] || k == size[2]) return 0.0;
+            const auto value = static_cast<double>(view.at(i, j, k));
+            return std::isnan(isovalue) ? value : static_cast<double>(value >= isovalue);
+        };
+        double count = 0;
+        for (std::int64_t k = 0; k <= size[2]; ++k) {
+            for (std::int64_t j = 0; j <= size[1]; ++j) {
+                for (std::int64_t i = 0; i <= size[0]; ++i) {
+                    const double here = sideOf(i, j, k);
+                    count += (here != sideOf(i - 1, j, k)) + (here != sideOf(i, j - 1, k)) +
+                             (here != sideOf(i, j, k - 1));
+                }
+            }
+        }
+        return count;
+    });
+}
+
 /// Reads a mesh. Frames that belong to an image are taken for those of the file's own, else of the
 /// image that is open; where there is neither, points stay as they are.
 void openMesh(const std::string& path) {
@@ -258,6 +282,11 @@ EMSCRIPTEN_KEEPALIVE int adaptisoOpenImage(const char* path, int volumeIndex, co
 
 EMSCRIPTEN_KEEPALIVE int adaptisoPreview(double isovalue) {
     return web::answering("adaptiso-mesh", [&] { web::preview(isovalue); });
+}
+
+/// \return 0 without an image
+EMSCRIPTEN_KEEPALIVE double adaptisoCrossedEdges(double isovalue) {
+    return web::image ? web::crossedEdges(web::image->read.volume.view(), isovalue) : 0;
 }
 
 EMSCRIPTEN_KEEPALIVE int adaptisoOpenMesh(const char* path, const char* program) {

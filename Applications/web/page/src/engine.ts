@@ -65,6 +65,10 @@ export class Looker {
     if (this.channel === undefined) throw new Cancelled();
     return this.channel.ask<Shape>({ kind: "preview", isovalue });
   }
+  async crossedEdges(isovalue: number): Promise<number> {
+    if (this.channel === undefined) throw new Cancelled();
+    return this.channel.ask<number>({ kind: "edges", isovalue });
+  }
   async mesh(file: InputFile, program: string): Promise<OpenedMesh> {
     this.channel ??= await this.make();
     return this.channel.ask<OpenedMesh>({ kind: "mesh", file, program });
@@ -82,11 +86,13 @@ export class Engine {
     return new Looker(() => this.channel());
   }
 
-  /** Runs a program in an instance of its own; to cancel is to end its worker. */
-  run(program: string, args: string[], files: InputFile[], folders: string[],
+  /** Runs a program in an instance of its own once it `fits`; to cancel is to end its worker. */
+  run(program: string, args: string[], files: InputFile[], folders: string[], fits: Promise<void>,
       onProgress: (text: string) => void): Job {
-    let channel: Channel | undefined, isCancelled = false;
+    let channel: Channel | undefined, isCancelled = false, stop = (): void => {};
+    const cancelled = new Promise<never>((_, reject) => { stop = () => reject(new Cancelled()); });
     const start = async (): Promise<RunResult> => {
+      await Promise.race([fits, cancelled]);
       channel = await this.channel();
       if (isCancelled) throw new Cancelled();
       try {
@@ -95,7 +101,7 @@ export class Engine {
         channel.end(new Cancelled());
       }
     };
-    return { result: start(), cancel: () => { isCancelled = true; channel?.end(new Cancelled()); } };
+    return { result: start(), cancel: () => { isCancelled = true; stop(); channel?.end(new Cancelled()); } };
   }
 
   private async channel(): Promise<Channel> {

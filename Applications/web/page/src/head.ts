@@ -1,8 +1,8 @@
 /** The tab Head model: adaptiso-bem of a T1, with or without a mask, or of a label map. */
 import { byId, formatCount, make } from "./dom";
 import { takeFiles } from "./drop";
-import type { InputFile, RunResult } from "./protocol";
-import type { Scan } from "./scan";
+import type { ImageFacts, InputFile, RunResult } from "./protocol";
+import { memoryOf, type Scan } from "./scan";
 import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
 import { exampleHead } from "./nifti";
 import type { Color, Surface } from "./painter";
@@ -40,7 +40,7 @@ export class HeadTab {
     byId("tissues-box").hidden = !isLabels;
   }
 
-  private runOf(): Run {
+  private runOf(facts: ImageFacts): Run {
     const scan = this.scan, source = byId<HTMLSelectElement>("source").value;
     const files = [...scan.files], args = [source === "labels" ? "--labels" : source === "ct" ? "--ct" : "--t1", scan.path,
       ...scan.readArgs];
@@ -58,12 +58,13 @@ export class HeadTab {
     if (isChecked("head-gifti")) args.push("--gifti");
     args.push("-o", "model", "--json", kReport);
     const shownArgs = args.map((arg) => arg.startsWith("mask/") ? arg.slice("mask/".length) : arg);
-    return { program: "adaptiso-bem", args, files, shownArgs };
+    return { program: "adaptiso-bem", args, files, shownArgs, memoryBytes: memoryOf.head(facts, source === "labels") };
   }
 
   async make(): Promise<void> {
-    if (this.scan.facts === undefined) return this.task.refuse("Give a scan first.");
-    const run = this.runOf(), done = await this.task.run(run);
+    const { facts } = this.scan;
+    if (facts === undefined) return this.task.refuse("Give a scan first.");
+    const run = this.runOf(facts), done = await this.task.run(run);
     if (done !== undefined) await this.show(run, done);
   }
 

@@ -1,8 +1,8 @@
 /** The tab Labels: adaptiso-labels of a segmentation. */
 import { byId, formatCount, make, swatch } from "./dom";
 import { takeFiles } from "./drop";
-import type { InputFile, RunResult } from "./protocol";
-import type { Scan } from "./scan";
+import type { ImageFacts, InputFile, RunResult } from "./protocol";
+import { memoryOf, type Scan } from "./scan";
 import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
 import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
@@ -34,7 +34,7 @@ export class LabelsTab {
     byId("labels-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
   }
 
-  private runOf(): Run {
+  private runOf(facts: ImageFacts): Run {
     const scan = this.scan, files = [...scan.files], args = [scan.path, ...scan.readArgs];
     if (this.names !== undefined) {
       files.push({ ...this.names, path: `names/${this.names.path}` });
@@ -45,12 +45,14 @@ export class LabelsTab {
     if (isChecked("file-names")) args.push("--file-names", "name");
     args.push("--format", byId<HTMLSelectElement>("labels-format").value, "-o", "regions-of-map", "--json", kReport);
     return { program: "adaptiso-labels", args, files,
+      memoryBytes: scan.looker.crossedEdges(Number.NaN).then((faces) => memoryOf.labels(facts, faces)),
       shownArgs: args.map((arg) => arg.startsWith("names/") ? arg.slice("names/".length) : arg) };
   }
 
   async make(): Promise<void> {
-    if (this.scan.facts === undefined) return this.task.refuse("Give a label map first.");
-    const run = this.runOf(), done = await this.task.run(run);
+    const { facts } = this.scan;
+    if (facts === undefined) return this.task.refuse("Give a label map first.");
+    const run = this.runOf(facts), done = await this.task.run(run);
     if (done !== undefined && done.exitCode === 0) await this.show(run, done);
   }
 

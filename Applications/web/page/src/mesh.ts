@@ -4,9 +4,9 @@ import { stemOf, takeFiles } from "./drop";
 import { Cancelled } from "./engine";
 import { Histogram } from "./histogram";
 import { exampleHead } from "./nifti";
-import type { RunResult, Shape } from "./protocol";
+import type { ImageFacts, RunResult, Shape } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
-import { isChecked, kMostMemory, kReport, number, outputsOf, type Page, reportOf, type Run, Task, tooLarge } from "./task";
+import { isChecked, kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
 import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kPreview: Color = [110, 190, 240];
@@ -105,7 +105,7 @@ export class MeshTab {
     }
   }
 
-  private runOf(): Run {
+  private runOf(facts: ImageFacts): Run {
     const scan = this.scan, format = byId<HTMLSelectElement>("format").value, frame = byId<HTMLSelectElement>("frame").value;
     const args = [scan.path, ...scan.readArgs, "--iso", number("iso")];
     if (number("smooth") !== "") args.push("--smooth", number("smooth"));
@@ -115,15 +115,15 @@ export class MeshTab {
     if (isChecked("fill")) args.push("--fill-cavities");
     if (frame !== "") args.push("--coordinates", frame);
     args.push("-o", `${stemOf(scan.path)}${format}`, "--json", kReport);
-    return { program: "adaptiso-mesh", args, files: scan.files };
+    const isByCount = isChecked("by-count"), isSmoothed = Number(number("smooth")) > 0;
+    return { program: "adaptiso-mesh", args, files: scan.files,
+      memoryBytes: scan.looker.crossedEdges(Number(number("iso"))).then((edges) => memoryOf.mesh(facts, edges, isByCount, isSmoothed)) };
   }
 
   async make(): Promise<void> {
     const { facts } = this.scan;
     if (facts === undefined) return this.task.refuse("Give a scan first.");
-    const need = memoryOf(facts, this.previewTriangles);
-    if (need > kMostMemory) return this.task.refuse(tooLarge(this.scan.path, need, "adaptiso-mesh"));
-    const run = this.runOf(), done = await this.task.run(run);
+    const run = this.runOf(facts), done = await this.task.run(run);
     if (done === undefined || done.exitCode !== 0) return;
     await this.show(run, done);
   }

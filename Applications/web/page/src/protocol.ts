@@ -22,9 +22,11 @@ export interface OpenRequest {
   isLabels: boolean;
 }
 export interface PreviewRequest { kind: "preview"; isovalue: number }
+/** Of the open image: pairs of neighbouring voxels that a surface passes between; NaN: that differ. */
+export interface EdgesRequest { kind: "edges"; isovalue: number }
 export interface MeshRequest { kind: "mesh"; file: InputFile; program: string }
 
-export type Request = RunRequest | OpenRequest | PreviewRequest | MeshRequest;
+export type Request = RunRequest | OpenRequest | PreviewRequest | EdgesRequest | MeshRequest;
 export interface Message { id: number; module?: WebAssembly.Module; request: Request }
 
 export interface RunResult {
@@ -60,5 +62,5 @@ export interface OpenedMesh { shape: Shape; format: string; frame: string | null
 
 export type Reply =
   | { id: number; kind: "progress"; text: string }
-  | { id: number; kind: "done"; result: RunResult | OpenedImage | OpenedMesh | Shape }
+  | { id: number; kind: "done"; result: RunResult | OpenedImage | OpenedMesh | Shape | number }
   | { id: number; kind: "refused"; line: string; exitCode: number };

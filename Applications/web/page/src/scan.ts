@@ -4,16 +4,16 @@ import { asInput } from "./drop";
 import { Cancelled, type Looker, Refused } from "./engine";
 import { nifti } from "./nifti";
 import type { ImageFacts, InputFile } from "./protocol";
-import { kMostMemory, type Page, type Task, tooLarge } from "./task";
+import { kMostMemory, kProgramBytes, type Page, type Task, tooLarge } from "./task";
 
-/** Least size after unpacking, bytes: gzip ends with the length of its last member, modulo 4 GiB. */
+/** Size after unpacking, bytes: gzip ends with the length of its last member, modulo 4 GiB. */
 async function unpackedBytes({ data }: InputFile): Promise<number> {
   const size = data instanceof Blob ? data.size : data.length;
   if (!(data instanceof Blob) || size < 18) return size;
   const [one, other] = new Uint8Array(await data.slice(0, 2).arrayBuffer());
   if (one !== 0x1f || other !== 0x8b) return size;
   const length = new DataView(await data.slice(-4).arrayBuffer()).getUint32(0, true);
-  return length < size / 2 ? size : size + length;  // less: several members, as BGZF's, or padding
+  return length < size / 2 ? size : length;  // less: several members, as BGZF's, or padding
 }
 
 export class Scan {
@@ -73,7 +73,8 @@ export class Scan {
     byId("scan-warnings").replaceChildren();
     try {
       const bytes = (await Promise.all(files.map(unpackedBytes))).reduce((sum, each) => sum + each, 0);
-      if (2 * bytes > kMostMemory) throw new Refused(tooLarge(path, 2 * bytes, "adaptiso-mesh, or adaptiso-giant"), 3);
+      const need = kProgramBytes + bytes;
+      if (need > kMostMemory) throw new Refused(tooLarge(path, need, "adaptiso-mesh, or adaptiso-giant"), 3);
       const { facts, shades } = await this.looker.open({ files, path, volumeIndex: this.volumeIndex, series: this.series, isLabels });
       this.facts = facts;
       this.tell(facts);
@@ -98,7 +99,22 @@ export class Scan {
   }
 }
 
-/** An estimate, not measured: the adaptive method takes about 110 bytes a triangle of marching cubes beside the image. */
-export function memoryOf(facts: ImageFacts, previewTriangles: number): number {
-  return 3 * facts.bytes + 110 * previewTriangles * facts.previewStep ** 2 + 30e6;
-}
+/**
+ * Peak memory of a run, bytes: within a quarter of what it takes, or more. Measured over ch2, ch2bet, balls and
+ * lattices of 128 to 256 voxels along each axis, bytes, shorts and floats, packed or not, and four atlases.
+ */
+export const memoryOf = {
+  /** \param edges  that the surface crosses  \param isSmoothed  the image is, into floats, before */
+  mesh(facts: ImageFacts, edges: number, isByCount: boolean, isSmoothed: boolean): number {
+    const extraction = (isByCount ? 240 : 320) * edges, voxels = voxelsOf(facts);
+    return kProgramBytes + facts.bytes + (isSmoothed ? Math.max(8 * voxels, 4 * voxels + extraction) : extraction);
+  },
+  /** \param faces  between voxels of different labels; thin sheets take up to three times as much */
+  labels: (facts: ImageFacts, faces: number): number => kProgramBytes + facts.bytes + 575 * faces,
+  /** Of voxels, and of a grid of 1 mm. */
+  head(facts: ImageFacts, isLabels: boolean): number {
+    const voxels = voxelsOf(facts), mm3 = facts.geometry.spacingMm.reduce((product, mm) => product * mm, voxels);
+    return kProgramBytes + facts.bytes + (isLabels ? 18 * voxels + 31 * mm3 : 8 * voxels + 42 * mm3);
+  },
+};
+const voxelsOf = (facts: ImageFacts): number => facts.geometry.sizeVoxels.reduce((product, size) => product * size, 1);

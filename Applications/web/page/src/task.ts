@@ -18,6 +18,8 @@ export interface Run {
   args: string[];
   files: InputFile[];
   folders?: string[];
+  /** Its peak, estimated. */
+  memoryBytes: number | Promise<number>;
   /** Of the command: what stands for a file or folder that was dropped without its path. */
   shownArgs?: string[];
 }
@@ -66,7 +68,11 @@ export class Task {
     stage.textContent = "start";
     bar.removeAttribute("value");
     progress.hidden = false;
-    const job = this.page.engine.run(run.program, [...run.args], run.files, run.folders ?? [], (text) => {
+    const fits = Promise.resolve(run.memoryBytes).then((bytes) => {
+      this.section.dataset.estimatedBytes = String(Math.round(bytes));
+      if (bytes > kMostMemory) throw new Refused(tooLarge(run.files[0].path, bytes, run.program), 3);
+    });
+    const job = this.page.engine.run(run.program, [...run.args], run.files, run.folders ?? [], fits, (text) => {
       if (text === "") return;
       const step = parseProgress(text);
       stage.textContent = step.stage;
@@ -75,6 +81,7 @@ export class Task {
     this.job = job;
     try {
       const done = await job.result;
+      this.section.dataset.memoryBytes = String(done.memoryBytes);
       const lines = done.stderr.split("\n").filter((line) => line !== "");
       const error = done.exitCode === 0 ? undefined : lines.at(-1);
       if (error !== undefined) this.refuse(error);
@@ -152,8 +159,8 @@ export function reportOf(done: RunResult): Record<string, unknown> | undefined {
 export const kReport = "report.json";
 export const outputsOf = (done: RunResult): OutputFile[] => done.files.filter((file) => file.path !== kReport);
 
-/** 4 GB is all that a page's memory can be. */
-export const kMostMemory = 3.6e9;
+/** Bytes: a page's memory ends at 4 GiB; the programs themselves begin with this much. */
+export const kMostMemory = 4e9, kProgramBytes = 17e6;
 
 export function tooLarge(what: string, bytes: number, program: string): string {
   return `${what} needs about ${formatBytes(bytes)} of memory, and a page has 4 GB: use ${program}`;

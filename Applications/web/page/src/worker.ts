@@ -159,6 +159,9 @@ async function handle(id: number, request: Message["request"]): Promise<void> {
     const shape = shapeOf(instance, call(instance, "adaptisoPreview", ["number"], [request.isovalue]));
     return reply({ id, kind: "done", result: shape }, buffersOf(shape));
   }
+  if (request.kind === "edges") {
+    return reply({ id, kind: "done", result: instance.ccall("adaptisoCrossedEdges", "number", ["number"], [request.isovalue]) as number });
+  }
   await put(instance.FS, request.file);
   try {
     const facts = call(instance, "adaptisoOpenMesh", ["string", "string"], [request.file.path, request.program]);

@@ -204,7 +204,33 @@ for (const browserName of kBrowsers) {
       writeFileSync(join(folder, "huge.nii.gz"), bytes);
       await give(page, "#scan-files", join(folder, "huge.nii.gz"));
       await page.waitForFunction(() => !document.querySelector("#mesh .refusal").hidden);
-      assert.match(await textOf(page, "#mesh .refusal"), /^huge\.nii\.gz needs about 8\.0 GB of memory, and a page has 4 GB: use adaptiso-mesh/);
+      assert.match(await textOf(page, "#mesh .refusal"), /^huge\.nii\.gz needs about 4\.0 GB of memory, and a page has 4 GB: use adaptiso-mesh/);
+    });
+
+    it("refuses a surface that no memory of a page holds before it makes it", async () => {
+      // all neighbours differ: 3 x 192 x 160 x 160 edges, 320 bytes each
+      writeNifti(join(folder, "rough.nii"), [192, 160, 160], (i, j, k) => 255 * ((i + j + k) & 1));
+      await give(page, "#scan-files", join(folder, "rough.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "rough.nii", { timeout: 120_000 });
+      await press(page, "#mesh .go");
+      await page.waitForFunction(() => !document.querySelector("#mesh .refusal").hidden, { timeout: 60_000 });
+      assert.match(await textOf(page, "#mesh .refusal"), /^rough\.nii needs about 4\.7 GB of memory, and a page has 4 GB: use adaptiso-mesh$/);
+    });
+
+    it("estimates what a run takes", async () => {
+      const memory = (tab) => page.$eval(`#${tab}`, ({ dataset }) => [dataset.estimatedBytes, dataset.memoryBytes].map(Number));
+      // below 20 MB nothing grows; a heap grows by a fifth at once
+      writeNifti(join(folder, "waves.nii"), [128, 128, 128], (i, j, k) => 128 + 100 * Math.sin(i / 3) * Math.sin(j / 3) * Math.sin(k / 3));
+      await give(page, "#scan-files", join(folder, "waves.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "waves.nii", { timeout: 120_000 });
+      for (const [smooth, least, most] of [["", 0.75, 1.25], ["1.5", 0.75, 2]]) {  // fewer edges are left of what is smoothed
+        await page.$eval("#smooth", (input, mm) => { input.value = mm; }, smooth);
+        await press(page, "#mesh .go");
+        assert.equal(await ended(page, "mesh"), "");
+        const [estimated, taken] = await memory("mesh");
+        assert.ok(estimated > least * taken && estimated < most * taken, `${smooth}: ${estimated} for ${taken} bytes`);
+      }
+      await page.$eval("#smooth", (input) => { input.value = ""; });
     });
 
     it("cancels within 0.2 s, and makes the mesh again", async () => {
