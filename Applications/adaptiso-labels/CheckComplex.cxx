@@ -111,10 +111,8 @@ LabelsCheck checkCrossings(const LabelComplex& complex) {
 
 LabelsCheck checkCentres(const LabelComplex& complex, const VolumeView& map, const LabelsRun& run) {
     LabelsCheck check{"every voxel centre lies in the region of its label"};
-    std::vector<Label> labels;
-    for (const Region& region : run.regions) labels.push_back(region.label);
-    const MislabelledCentres found =
-        findMislabelledCentres({complex.points, complex.triangles, complex.labels}, map, labels);
+    const MislabelledCentres found = findMislabelledCentres(
+        {complex.points, complex.triangles, complex.labels}, map, labelsOf(run.regions));
     check.isPassed = found.count == 0;
     if (check.isPassed) return check;
     const Index3& at = *found.first;

@@ -139,9 +139,7 @@ LabelComplex extract(const VolumeView& map, LabelsRun& run) {
     extraction.reduction = options.reduction;
     extraction.minAngleDeg = options.minAngleDeg;
     extraction.progress = run.progress.callback();
-    if (!options.labels.empty()) {
-        for (const Region& region : run.regions) extraction.labels.push_back(region.label);
-    }
+    if (!options.labels.empty()) extraction.labels = labelsOf(run.regions);
     LabelResult result =
         naming(baseName(options.input), [&] { return extractLabels(map, extraction); });
     run.statistics = result.statistics;
@@ -151,9 +149,7 @@ LabelComplex extract(const VolumeView& map, LabelsRun& run) {
 }
 
 void measure(const LabelComplex& complex, LabelsRun& run) {
-    std::vector<Label> labels;
-    for (const Region& region : run.regions) labels.push_back(region.label);
-    for (RegionMeasure& measure : measureRegions(complex, labels)) {
+    for (RegionMeasure& measure : measureRegions(complex, labelsOf(run.regions))) {
         const auto region =
             std::ranges::lower_bound(run.regions, measure.label, {}, &Region::label);
         if (region != run.regions.end() && region->label == measure.label) {
@@ -226,12 +222,12 @@ int runLabels(const LabelsOptions& given) {
     LabelComplex complex = run.stage("extract", [&] { return extract(map, run); });
     run.stage("fit", [&] { fitToFiles(complex, run); });
     run.stage("measure", [&] { measure(complex, run); });
-    const RegionSurfaces surfaces(complex, run.regions);
+    const RegionSurfaces surfaces(complex, labelsOf(run.regions));
     if (run.format->precision == CoordinatePrecision::Float64) {
         checkComplex(complex, surfaces, map, run);
     } else {
         const LabelComplex stored = asStored(complex, run);
-        checkComplex(stored, RegionSurfaces(stored, run.regions), map, run);
+        checkComplex(stored, RegionSurfaces(stored, labelsOf(run.regions)), map, run);
     }
     if (options.tetrahedra.isAsked() && run.holdsPromises()) {
         run.stage("tetrahedra", [&] { makeTetrahedra(complex, run); });

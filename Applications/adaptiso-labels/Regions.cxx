@@ -234,52 +234,10 @@ void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, La
     warnOfNameless(run);
 }
 
-RegionSurfaces::RegionSurfaces(const LabelComplex& complex, const std::vector<Region>& regions)
-    : complex_(complex) {
-    for (const Region& region : regions) labels_.push_back(region.label);
-    const auto placeOf = [&](Label label) {
-        const auto at = std::ranges::lower_bound(labels_, label);
-        return at != labels_.end() && *at == label ? at - labels_.begin() : std::ptrdiff_t{-1};
-    };
-    begins_.assign(labels_.size() + 1, 0);
-    const auto forEachSide = [&](const auto& take) {
-        for (std::int64_t t = 0; t < std::ssize(complex.triangles); ++t) {
-            for (const Label label : complex.labels[t]) {
-                if (const std::ptrdiff_t place = placeOf(label); place >= 0) take(place, t);
-            }
-        }
-    };
-    forEachSide([&](std::ptrdiff_t place, std::int64_t) { ++begins_[place + 1]; });
-    for (std::size_t n = 0; n < labels_.size(); ++n) begins_[n + 1] += begins_[n];
-    triangles_.resize(static_cast<std::size_t>(begins_.back()));
-    std::vector<std::int64_t> next(begins_.begin(), begins_.end() - 1);
-    forEachSide([&](std::ptrdiff_t place, std::int64_t t) { triangles_[next[place]++] = t; });
-}
-
-TriangleMesh RegionSurfaces::surface(std::size_t n) const {
-    const auto own = std::span(triangles_)
-                         .subspan(static_cast<std::size_t>(begins_[n]),
-                                  static_cast<std::size_t>(begins_[n + 1] - begins_[n]));
-    std::vector<VertexId> used;
-    used.reserve(3 * own.size());
-    for (const std::int64_t t : own) {
-        used.insert(used.end(), complex_.triangles[t].begin(), complex_.triangles[t].end());
-    }
-    std::ranges::sort(used);
-    const auto repeated = std::ranges::unique(used);
-    used.erase(repeated.begin(), repeated.end());
-    TriangleMesh mesh;
-    mesh.points.reserve(used.size());
-    for (const VertexId v : used) mesh.points.push_back(complex_.points[v]);
-    mesh.triangles.reserve(own.size());
-    for (const std::int64_t t : own) {
-        Triangle corners = complex_.triangles[t];
-        for (VertexId& v : corners) v = std::ranges::lower_bound(used, v) - used.begin();
-        // a wall's normal points out of its first label's region
-        if (complex_.labels[t][0] != labels_[n]) std::swap(corners[1], corners[2]);
-        mesh.triangles.push_back(corners);
-    }
-    return mesh;
+std::vector<Label> labelsOf(const std::vector<Region>& regions) {
+    std::vector<Label> labels;
+    for (const Region& region : regions) labels.push_back(region.label);
+    return labels;
 }
 
 }  // namespace adaptiso::labels

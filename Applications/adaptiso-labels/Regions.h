@@ -52,22 +52,8 @@ std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsOptions& 
 /// name. \throws FileError  the table of --names
 void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, LabelsRun& run);
 
-/// The surfaces of the regions of a complex, one at a time, without looking at all walls for each.
-class RegionSurfaces {
-public:
-    /// \param complex  must live as long
-    RegionSurfaces(const LabelComplex& complex, const std::vector<Region>& regions);
-
-    /// The n-th region's surface: closed, outward; its points are the complex's, to the bit, in
-    /// their order, and so are its triangles. May be called from several threads.
-    TriangleMesh surface(std::size_t n) const;
-
-private:
-    const LabelComplex& complex_;
-    std::vector<Label> labels_;
-    std::vector<std::int64_t> begins_;     ///< of each region's triangles; one more than regions
-    std::vector<std::int64_t> triangles_;  ///< numbers, by region
-};
+/// As the library takes them, ascending.
+std::vector<Label> labelsOf(const std::vector<Region>& regions);
 
 /// \throws InvalidInput  a region's label is below 1, which the files of tetrahedra have no place
 /// for

@@ -5,6 +5,7 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
+#include "Common/LabelsJson.h"
 #include "Common/ReportOutput.h"
 #include "Common/RunApp.h"
 #include "Regions.h"
@@ -52,44 +53,17 @@ Json optionsJson(const LabelsOptions& options) {
             {"strict", options.common.isStrict}};
 }
 
-Json wallsJson(const LabelsRun& run) {
-    const LabelStatistics& statistics = run.statistics;
-    return {{"points", run.points},
-            {"triangles", run.triangles},
-            {"mapTriangles", statistics.mapTriangles},
-            {"fullTriangles", statistics.fullTriangles},
-            {"wantedTriangles", orNull(statistics.wantedTriangles)},
-            {"errorBoundMm", number(run.errorBoundMm())},
-            {"cells", statistics.cells},
-            {"dividedCells", statistics.dividedCells},
-            {"heldVertices", statistics.heldVertices},
-            {"mendedCrossings", statistics.mendedCrossings}};
-}
-
 Json regionJson(const Region& region) {
-    const RegionMeasure& measure = region.measure;
-    Json neighbours = Json::array();
-    for (const RegionContact& contact : measure.neighbours) {
-        neighbours.push_back({{"label", contact.label},
-                              {"triangles", contact.triangles},
-                              {"areaMm2", number(contact.areaMm2)}});
-    }
-    const Json abbreviation =
-        region.abbreviation.empty() ? Json(nullptr) : Json(region.abbreviation);
-    return {{"label", region.label},
-            {"name", region.name},
-            {"isNamed", region.hasOwnName},
-            {"abbreviation", abbreviation},
-            {"color", hexText(region.color)},
-            {"voxels", region.voxels},
-            {"volumeMm3", number(measure.volumeMm3)},
-            {"areaMm2", number(measure.areaMm2)},
-            {"vertices", measure.vertices},
-            {"triangles", measure.triangles},
-            {"eulerCharacteristic", measure.eulerCharacteristic},
-            {"components", measure.components},
-            {"neighbours", neighbours},
-            {"file", region.file}};
+    Json json = measureJson(
+        {{"label", region.label},
+         {"name", region.name},
+         {"isNamed", region.hasOwnName},
+         {"abbreviation", region.abbreviation.empty() ? Json(nullptr) : Json(region.abbreviation)},
+         {"color", hexText(region.color)},
+         {"voxels", region.voxels}},
+        region.measure);
+    json["file"] = region.file;
+    return json;
 }
 
 Json tetrahedraJson(const LabelsRun& run) {
@@ -138,7 +112,7 @@ Json sharedJson(const LabelsRun& run) {
               {"coordinates", frameWord(run.frame)},
               {"roundingMm", number(run.roundingMm)},
               {"giftiRoundingMm", run.leavesGiftiOut ? Json() : number(run.giftiRoundingMm)}}},
-            {"walls", wallsJson(run)},
+            {"walls", wallsJson(run.points, run.triangles, run.errorBoundMm(), run.statistics)},
             {"regions", regions},
             {"tetrahedra", tetrahedraJson(run)},
             {"passed", run.holdsPromises()},

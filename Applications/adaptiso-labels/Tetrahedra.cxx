@@ -17,14 +17,12 @@ void requireTetrahedraLabels(const LabelsRun& run) {
 }
 
 void makeTetrahedra(const LabelComplex& complex, LabelsRun& run) {
-    std::vector<Label> labels;
     RegionTetrahedra made;
     for (const Region& region : run.regions) {
-        labels.push_back(region.label);
         made.regions.push_back(
             {region.label, region.name, region.measure.volumeMm3, region.measure.areaMm2});
     }
-    made.mesh = runMesher(labelMesherInput(complex, labels), run.options.tetrahedra);
+    made.mesh = runMesher(labelMesherInput(complex, labelsOf(run.regions)), run.options.tetrahedra);
     takeRegions(made.mesh, made.regions);
     made.report = checkTetrahedra(made.mesh, made.regions);
     LabelsCheck all{

@@ -82,7 +82,7 @@ protected:
                 if (measure.label == label) region.measure = measure;
             }
         }
-        const RegionSurfaces surfaces(complex_, run.regions);
+        const RegionSurfaces surfaces(complex_, labelsOf(run.regions));
         checkComplex(complex_, surfaces, {map_.data(), geometry_}, run);
         std::vector<int> failing;
         for (std::size_t n = 0; n < run.checks.size(); ++n) {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
-#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Labels/Labels.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
@@ -111,21 +110,6 @@ Vec3 pointWithin(const LabelComplex& complex, const TriangleMesh& walls, const A
     throw InvalidInput("labelMesherInput: a piece of a region is too thin for a point in it");
 }
 
-/// The sides of each label wanted.
-std::vector<std::vector<WallSide>> sidesOf(const LabelComplex& complex,
-                                           const std::vector<Label>& labels) {
-    std::vector<std::vector<WallSide>> sides(labels.size());
-    for (std::int64_t t = 0; t < std::ssize(complex.triangles); ++t) {
-        for (int place = 0; place < 2; ++place) {
-            const Label label = complex.labels[t][place];
-            const auto found = std::lower_bound(labels.begin(), labels.end(), label);
-            if (found == labels.end() || *found != label) continue;
-            sides[static_cast<std::size_t>(found - labels.begin())].push_back({t, place});
-        }
-    }
-    return sides;
-}
-
 }  // namespace
 
 MesherInput labelMesherInput(const LabelComplex& complex, const std::vector<Label>& labels) {
@@ -134,9 +118,13 @@ MesherInput labelMesherInput(const LabelComplex& complex, const std::vector<Labe
     const AabbTree tree(walls);
     // the volume on either side of each triangle, from 1; 0: none
     std::vector<std::array<std::int32_t, 2>> volumes(complex.triangles.size());
-    const auto sides = sidesOf(complex, labels);
+    const RegionSurfaces surfaces(complex, labels);
     for (std::size_t region = 0; region < labels.size(); ++region) {
-        const std::vector<Shell> shells = shellsOf(complex, sides[region]);
+        std::vector<WallSide> sides;
+        for (const std::int64_t t : surfaces.triangles(region)) {
+            sides.push_back({t, complex.labels[t][0] == labels[region] ? 0 : 1});
+        }
+        const std::vector<Shell> shells = shellsOf(complex, sides);
         std::vector<std::size_t> outer;
         std::vector<std::int32_t> numbers(shells.size());
         for (std::size_t n = 0; n < shells.size(); ++n) {

@@ -2,7 +2,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,16 +12,16 @@
 namespace adaptiso {
 namespace {
 
-/// A triangle of a region's surface, outward, and what lies beyond it.
-struct Side {
-    std::int64_t triangle;
-    bool isTurned;
-    Label beyond;
-};
-
-Triangle cornersOf(const LabelComplex& complex, const Side& side) {
-    const Triangle& t = complex.triangles[side.triangle];
-    return side.isTurned ? Triangle{t[0], t[2], t[1]} : t;
+/// Triangles of a region's surface, outward.
+std::vector<Triangle> outward(const LabelComplex& complex, Label label,
+                              std::span<const std::int64_t> numbers) {
+    std::vector<Triangle> triangles;
+    triangles.reserve(numbers.size());
+    for (const std::int64_t n : numbers) {
+        const Triangle& t = complex.triangles[n];
+        triangles.push_back(complex.labels[n][0] == label ? t : Triangle{t[0], t[2], t[1]});
+    }
+    return triangles;
 }
 
 /// The points that a surface uses, ascending.
@@ -54,43 +53,25 @@ std::int64_t countEdges(const std::vector<Triangle>& triangles) {
     return std::unique(edges.begin(), edges.end()) - edges.begin();
 }
 
-std::int64_t countComponents(const std::vector<Triangle>& triangles, std::int64_t points) {
-    std::vector<VertexId> parent(points);
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto rootOf = [&](VertexId v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
-    std::int64_t count = points;
-    for (const Triangle& t : triangles) {
-        for (int c = 1; c < 3; ++c) {
-            const VertexId a = rootOf(t[0]), b = rootOf(t[c]);
-            if (a == b) continue;
-            parent[b] = a;
-            --count;
-        }
-    }
-    return count;
-}
-
-RegionMeasure measure(const LabelComplex& complex, Label label, std::span<const Side> sides) {
+RegionMeasure measure(const LabelComplex& complex, Label label,
+                      std::span<const std::int64_t> numbers) {
     RegionMeasure m;
     m.label = label;
-    m.triangles = static_cast<std::int64_t>(sides.size());
-    const Vec3 origin = complex.points[complex.triangles[sides.front().triangle][0]];
+    m.triangles = static_cast<std::int64_t>(numbers.size());
+    const Vec3 origin = complex.points[complex.triangles[numbers.front()][0]];
     std::map<Label, RegionContact> contacts;
-    std::vector<Triangle> triangles;
-    triangles.reserve(sides.size());
-    for (const Side& side : sides) {
-        const Triangle t = cornersOf(complex, side);
-        triangles.push_back(t);
+    std::vector<Triangle> triangles = outward(complex, label, numbers);
+    for (std::size_t n = 0; n < triangles.size(); ++n) {
+        const Triangle& t = triangles[n];
         const Vec3 a = complex.points[t[0]] - origin, b = complex.points[t[1]] - origin,
                    c = complex.points[t[2]] - origin;
         const double areaMm2 = norm(areaVector2(a, b, c)) / 2;
         m.areaMm2 += areaMm2;
         m.volumeMm3 += dot(a, cross(b, c)) / 6;
-        RegionContact& contact = contacts[side.beyond];
-        contact.label = side.beyond;
+        const auto& [from, into] = complex.labels[numbers[n]];
+        const Label beyond = from == label ? into : from;
+        RegionContact& contact = contacts[beyond];
+        contact.label = beyond;
         ++contact.triangles;
         contact.areaMm2 += areaMm2;
     }
@@ -99,53 +80,56 @@ RegionMeasure measure(const LabelComplex& complex, Label label, std::span<const 
     renumber(triangles, used);
     m.vertices = static_cast<std::int64_t>(used.size());
     m.eulerCharacteristic = m.vertices - countEdges(triangles) + m.triangles;
-    m.components = countComponents(triangles, m.vertices);
+    DisjointSets pieces(m.vertices);
+    for (const auto& [a, b, c] : triangles) {
+        pieces.join(a, b);
+        pieces.join(a, c);
+    }
+    for (VertexId v = 0; v < m.vertices; ++v) m.components += pieces.find(v) == v;
     return m;
 }
 
 }  // namespace
 
-TriangleMesh regionSurface(const LabelComplex& complex, Label label) {
-    TriangleMesh mesh;
-    for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
-        const auto& [from, into] = complex.labels[t];
-        if (from != label && into != label) continue;
-        mesh.triangles.push_back(
-            cornersOf(complex, {static_cast<std::int64_t>(t), into == label, 0}));
-    }
+RegionSurfaces::RegionSurfaces(const LabelComplex& complex, const std::vector<Label>& labels)
+    : complex_(complex), labels_(labels), triangles_(labels.size(), [&](const auto& give) {
+          for (std::int64_t t = 0; t < std::ssize(complex.triangles); ++t) {
+              for (const Label label : complex.labels[t]) {
+                  const auto at = std::ranges::lower_bound(labels, label);
+                  if (at != labels.end() && *at == label) give(at - labels.begin(), t);
+              }
+          }
+      }) {}
+
+TriangleMesh RegionSurfaces::surface(std::size_t n) const {
+    TriangleMesh mesh{{}, {}, outward(complex_, labels_[n], triangles(n))};
     const std::vector<VertexId> used = pointsOf(mesh.triangles);
     renumber(mesh.triangles, used);
     mesh.points.reserve(used.size());
-    for (const VertexId v : used) mesh.points.push_back(complex.points[v]);
+    for (const VertexId v : used) mesh.points.push_back(complex_.points[v]);
     return mesh;
 }
 
+TriangleMesh regionSurface(const LabelComplex& complex, Label label) {
+    return RegionSurfaces(complex, {label}).surface(0);
+}
+
 std::vector<RegionMeasure> measureRegions(const LabelComplex& complex,
-                                          const std::vector<Label>& labels) {
-    std::map<Label, std::vector<Side>> sides;
-    for (const Label label : labels) sides[label];
-    const auto add = [&](Label label, const Side& side) {
-        if (label == 0) return;
-        const auto at = sides.find(label);
-        if (at != sides.end()) {
-            at->second.push_back(side);
-        } else if (labels.empty()) {
-            sides[label].push_back(side);
-        }
-    };
-    for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
-        const auto& [from, into] = complex.labels[t];
-        add(from, {static_cast<std::int64_t>(t), false, into});
-        add(into, {static_cast<std::int64_t>(t), true, from});
+                                          const std::vector<Label>& wanted) {
+    std::vector<Label> labels = wanted;
+    if (labels.empty()) {
+        for (const auto& sides : complex.labels) labels.insert(labels.end(), {sides[0], sides[1]});
+        std::sort(labels.begin(), labels.end());
+        labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+        std::erase(labels, 0);
     }
-    std::erase_if(sides, [](const auto& entry) { return entry.second.empty(); });
-    std::vector<std::pair<Label, std::span<const Side>>> regions;
-    for (const auto& [label, own] : sides) regions.emplace_back(label, own);
-    std::vector<RegionMeasure> measures(regions.size());
-    parallelForPieces(static_cast<std::int64_t>(regions.size()), 1,
-                      [&](std::int64_t n, std::int64_t) {
-                          measures[n] = measure(complex, regions[n].first, regions[n].second);
-                      });
+    const RegionSurfaces surfaces(complex, labels);
+    std::vector<RegionMeasure> measures(labels.size());
+    parallelForPieces(std::ssize(labels), 1, [&](std::int64_t n, std::int64_t) {
+        const auto triangles = surfaces.triangles(n);
+        if (!triangles.empty()) measures[n] = measure(complex, labels[n], triangles);
+    });
+    std::erase_if(measures, [](const RegionMeasure& m) { return m.triangles == 0; });
     return measures;
 }
 

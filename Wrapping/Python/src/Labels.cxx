@@ -12,6 +12,7 @@
 
 #include "Arrays.h"
 #include "Calls.h"
+#include "Common/LabelsJson.h"
 #include "MeshData.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
@@ -64,41 +65,15 @@ private:
 
 namespace {
 
-Json regionJson(const RegionMeasure& measure) {
-    Json neighbours = Json::array();
-    for (const RegionContact& contact : measure.neighbours) {
-        neighbours.push_back({{"label", contact.label},
-                              {"triangles", contact.triangles},
-                              {"areaMm2", number(contact.areaMm2)}});
-    }
-    return {{"label", measure.label},
-            {"volumeMm3", number(measure.volumeMm3)},
-            {"areaMm2", number(measure.areaMm2)},
-            {"vertices", measure.vertices},
-            {"triangles", measure.triangles},
-            {"eulerCharacteristic", measure.eulerCharacteristic},
-            {"components", measure.components},
-            {"neighbours", neighbours}};
-}
-
 Json reportJson(const LabelResult& result, const std::vector<Label>& labels) {
-    const LabelStatistics& statistics = result.statistics;
     Json regions = Json::array();
     for (const RegionMeasure& measure : measureRegions(result.complex, labels)) {
-        regions.push_back(regionJson(measure));
+        regions.push_back(measureJson({{"label", measure.label}}, measure));
     }
-    return {{"walls",
-             {{"points", result.complex.points.size()},
-              {"triangles", result.complex.triangles.size()},
-              {"mapTriangles", statistics.mapTriangles},
-              {"fullTriangles", statistics.fullTriangles},
-              {"wantedTriangles", orNull(statistics.wantedTriangles)},
-              {"errorBoundMm", number(statistics.errorBoundMm)},
-              {"cells", statistics.cells},
-              {"dividedCells", statistics.dividedCells},
-              {"heldVertices", statistics.heldVertices},
-              {"mendedCrossings", statistics.mendedCrossings}}},
-            {"regions", regions}};
+    return {
+        {"walls", wallsJson(std::ssize(result.complex.points), std::ssize(result.complex.triangles),
+                            result.statistics.errorBoundMm, result.statistics)},
+        {"regions", regions}};
 }
 
 }  // namespace

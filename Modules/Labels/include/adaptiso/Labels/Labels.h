@@ -3,8 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
@@ -93,6 +95,24 @@ std::vector<Label> findLabels(const VolumeView& volume);
 /// The surface of one region: closed, outward, its points those of the complex, to the bit, in
 /// the complex's order. Empty for a label that no triangle has.
 TriangleMesh regionSurface(const LabelComplex& complex, Label label);
+
+/// The same of several regions, one at a time, without looking at all walls for each.
+class RegionSurfaces {
+public:
+    /// \param complex  must live as long
+    /// \param labels   of the regions, ascending
+    RegionSurfaces(const LabelComplex& complex, const std::vector<Label>& labels);
+
+    /// Numbers of the n-th region's triangles in the complex, ascending.
+    std::span<const std::int64_t> triangles(std::size_t n) const { return triangles_.of(n); }
+    /// The n-th region's surface. May be called from several threads.
+    TriangleMesh surface(std::size_t n) const;
+
+private:
+    const LabelComplex& complex_;
+    std::vector<Label> labels_;
+    Buckets<std::int64_t> triangles_;  ///< of each region
+};
 
 /// Wall that a region shares with another one.
 struct RegionContact {
