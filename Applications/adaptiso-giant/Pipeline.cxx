@@ -18,7 +18,6 @@ namespace {
 /// Pieces of one process: few, so that little is lost with it, and enough that starting it costs
 /// nothing beside them.
 constexpr std::size_t kGroup = 8;
-constexpr int kMostTries = 3;
 
 using Ids = std::vector<std::string>;
 
@@ -39,39 +38,33 @@ std::string firstLine(const std::string& errors) {
     return errors.substr(begin, errors.find('\n') - begin);
 }
 
-/// Runs a step's pieces by processes of this program. Those that were killed are tried again.
+/// Runs a step's pieces by processes of this program. \throws InvalidInput  one was killed
 void runPieces(const GiantOptions& options, const std::string& step,
                const std::vector<Index3>& places, ProgressLine& progress) {
-    std::vector<Ids> left = grouped(places, static_cast<std::size_t>(options.workers));
+    const std::vector<Ids> groups = grouped(places, static_cast<std::size_t>(options.workers));
     const int threads =
         std::max(1, options.common.threads.value_or(options.workers) / options.workers);
-    for (int attempt = 1; !left.empty(); ++attempt) {
-        std::vector<Ids> killed;
-        std::string error;
-        std::size_t done = 0;
-        runChildren(
-            left.size(), options.workers,
-            [&](std::size_t n) {
-                std::vector<std::string> arguments{step, options.work.string()};
-                arguments.insert(arguments.end(), left[n].begin(), left[n].end());
-                arguments.insert(arguments.end(), {"--threads", std::to_string(threads), "-q"});
-                return arguments;
-            },
-            [&](std::size_t n, ChildResult result) {
-                progress.show(step, static_cast<double>(++done) / static_cast<double>(left.size()));
-                if (result.signal != 0) {
-                    killed.push_back(left[n]);
-                    error = step + " " + left[n].front() + ": was killed, " +
-                            std::to_string(kMostTries) +
-                            " times; it may need more memory: take fewer --workers, or a smaller "
-                            "--tile";
-                } else if (result.exitCode != kExitOk) {
-                    throw FileError(step + ": " + firstLine(result.errors));
-                }
-            });
-        if (!killed.empty() && attempt == kMostTries) throw InvalidInput(error);
-        left = std::move(killed);
-    }
+    std::string killed;
+    std::size_t done = 0;
+    runChildren(
+        groups.size(), options.workers,
+        [&](std::size_t n) {
+            std::vector<std::string> arguments{step, options.work.string()};
+            arguments.insert(arguments.end(), groups[n].begin(), groups[n].end());
+            arguments.insert(arguments.end(), {"--threads", std::to_string(threads), "-q"});
+            return arguments;
+        },
+        [&](std::size_t n, ChildResult result) {
+            progress.show(step, static_cast<double>(++done) / static_cast<double>(groups.size()));
+            if (result.signal != 0) {
+                if (killed.empty()) killed = groups[n].front();
+            } else if (result.exitCode != kExitOk) {
+                throw FileError(step + ": " + firstLine(result.errors));
+            }
+        });
+    if (killed.empty()) return;
+    throw InvalidInput(step + " " + killed + ": was killed; run it again, which goes on where it " +
+                       "was, with fewer --workers or a smaller --tile if memory is short");
 }
 
 }  // namespace
