@@ -8,7 +8,6 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <sstream>
 #include <system_error>
 
 #include "Common/CommonOptions.h"
@@ -47,13 +46,19 @@ std::string withPrefix(const std::string& label, const std::string& prefix) {
     return label.starts_with(prefix) ? label : prefix + label;
 }
 
+std::vector<std::string> splitAt(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+        end = text.find(separator, begin);
+        parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+    }
+    return parts;
+}
+
 /// Parts of `path` that are not empty.
 std::vector<std::string> partsOf(const std::string& path) {
-    std::vector<std::string> parts;
-    std::istringstream stream(path);
-    for (std::string part; std::getline(stream, part, '/');) {
-        if (!part.empty()) parts.push_back(part);
-    }
+    std::vector<std::string> parts = splitAt(path, '/');
+    std::erase(parts, "");
     return parts;
 }
 
@@ -139,10 +144,7 @@ std::optional<std::set<std::string>> listedParticipants(const fs::path& root) {
     if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
     const auto cells = [](std::string row) {
         if (row.ends_with('\r')) row.pop_back();
-        std::vector<std::string> found;
-        std::istringstream stream(row);
-        for (std::string cell; std::getline(stream, cell, '\t');) found.push_back(cell);
-        return found;
+        return splitAt(row, '\t');
     };
     const std::vector<std::string> header = cells(line);
     const auto column = std::ranges::find(header, "participant_id") - header.begin();
@@ -185,15 +187,6 @@ std::vector<fs::path> subjectsOf(const fs::path& root,
 bool isLabel(std::string_view text) {
     return !text.empty() && std::all_of(text.begin(), text.end(),
                                         [](unsigned char c) { return std::isalnum(c) != 0; });
-}
-
-std::vector<std::string> splitAt(const std::string& text, char separator) {
-    std::vector<std::string> parts;
-    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
-        end = text.find(separator, begin);
-        parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
-    }
-    return parts;
 }
 
 void requireDescription(const fs::path& root) {
