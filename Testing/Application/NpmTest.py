@@ -28,6 +28,12 @@ TESTS = ("BemElectrodesTest", "BemSurfacesTest", "BemTest", "BemTetrahedraTest",
 LEFT_OUT = {
     "no resampling": (
         "CheckTest.Truth.test_isosurface_of_a_preprocessed_volume", "InfoTest.Info.test_the_image_is_told_as_preprocessed",
+        "PreprocessTest.Preprocessing.test_blending_labels_is_warned_of",
+        "PreprocessTest.Preprocessing.test_labels_are_resampled_by_the_nearest_voxel",
+        "PreprocessTest.Preprocessing.test_resampling_keeps_the_sphere",
+        "PreprocessTest.Preprocessing.test_the_order_is_fixed_and_threads_change_nothing",
+        "PreprocessTest.Preprocessing.test_the_report_says_what_was_done",
+        "PreprocessTest.Refusals.test_lengths_that_do_not_fit", "PreprocessTest.Refusals.test_values_that_are_not_finite",
         "WordsTest.WrongCommandLines.test_get_one_line_that_helps"),
     "no pictures and HTML reports": (
         "BemElectrodesTest.Electrodes.test_a_page_shows_them",
@@ -35,10 +41,15 @@ LEFT_OUT = {
         "CheckNotesTest.Notes.test_text_and_page_tell_them_and_quiet_does_not", "CheckTest.Readme.test_examples_run",
         "CompareTest.Readme.test_examples_run", "InfoTest.Info.test_ends_with_commands_that_make_surfaces_of_this_input",
         "LabelsTest.OutputTest.test_another_image_behind_the_regions", "LabelsTest.OutputTest.test_report_page",
+        "SelfTestTest.SelfTest.test_measures_and_passes",
         "SimplifyTest.Reports.test_a_page_tells_what_was_read_from_what_was_written", "SimplifyTest.Reports.test_pages",
         "SimplifyTest.Reports.test_keys_are_the_documented_ones",
         "WarningsTest.Warnings.test_strict_writes_reports_and_no_surface"),
-    "no batches, which are child processes": (
+    "no child processes: meshers and batches": (
+        "BemTetrahedraTest.Tetrahedra.test_a_mesher_that_fails_is_told",
+        "BemTetrahedraTest.Tetrahedra.test_a_signal_leaves_neither_files_nor_the_mesher",
+        "BemTetrahedraTest.Tetrahedra.test_meshers_fill_the_layers",
+        "BemTetrahedraTest.Tetrahedra.test_the_files_for_duneuro_hold_the_same",
         "LabelsTest.BatchTest.test_many_inputs", "MistakesTest.Batches",
         "MistakesTest.Reports.test_of_batches_are_alike_for_each_input",
         "MistakesTest.Resources.test_one_thread_where_no_process_may_start",
