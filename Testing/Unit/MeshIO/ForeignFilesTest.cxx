@@ -135,7 +135,8 @@ TEST(Polygons, AreRefusedWithAWayOut) {
                       "POLYGONS 1 5\n4 0 1 2 3\n"},
     };
     for (const auto& [name, bytes] : files) {
-        const std::string message = messageOf<FileError>([&] { decoded(bytes, name); });
+        const std::string message =
+            messageOf<FileError>([&name = name, &bytes = bytes] { decoded(bytes, name); });
         EXPECT_EQ(
             message,
             std::string(name) +
