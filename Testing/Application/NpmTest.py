@@ -55,7 +55,8 @@ LEFT_OUT = {
         "MistakesTest.Resources.test_one_thread_where_no_process_may_start",
         "SimplifyDataTest.FreeSurfer.test_in_a_batch_each_has_its_own", "SimplifyTest.Batches",
         "WarningsTest.Allowed.test_batches_hand_them_on", "WarningsTest.Batches"),
-    "no MATLAB files": ("BemElectrodesTest.Electrodes.test_brainstorms_coordinates",),
+    "no MATLAB files": (
+        "BemElectrodesTest.Electrodes.test_brainstorms_coordinates", "BemTest.Model.test_four_layers"),
     "no ITK and oneTBB": ("CommandLineTest.Help.test_version_names_the_libraries",),
     "runs adaptiso-bids and adaptiso-giant too": (
         "CommandLineTest.Help.test_h_is_one_screen_with_every_option",
