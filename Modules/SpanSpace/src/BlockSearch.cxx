@@ -141,43 +141,11 @@ std::vector<std::uint32_t> blocksAround(const TypedVolumeView<T>& volume, const 
     return blocks;
 }
 
-template BlockRanges<std::uint8_t> computeBlockRanges(const TypedVolumeView<std::uint8_t>&,
-                                                      const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::uint8_t>&,
-                                                 const BlockGrid&, std::uint8_t);
-template BlockRanges<std::int8_t> computeBlockRanges(const TypedVolumeView<std::int8_t>&,
-                                                     const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::int8_t>&,
-                                                 const BlockGrid&, std::int8_t);
-template BlockRanges<std::uint16_t> computeBlockRanges(const TypedVolumeView<std::uint16_t>&,
-                                                       const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::uint16_t>&,
-                                                 const BlockGrid&, std::uint16_t);
-template BlockRanges<std::int16_t> computeBlockRanges(const TypedVolumeView<std::int16_t>&,
-                                                      const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::int16_t>&,
-                                                 const BlockGrid&, std::int16_t);
-template BlockRanges<std::uint32_t> computeBlockRanges(const TypedVolumeView<std::uint32_t>&,
-                                                       const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::uint32_t>&,
-                                                 const BlockGrid&, std::uint32_t);
-template BlockRanges<std::int32_t> computeBlockRanges(const TypedVolumeView<std::int32_t>&,
-                                                      const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::int32_t>&,
-                                                 const BlockGrid&, std::int32_t);
-template BlockRanges<std::uint64_t> computeBlockRanges(const TypedVolumeView<std::uint64_t>&,
-                                                       const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::uint64_t>&,
-                                                 const BlockGrid&, std::uint64_t);
-template BlockRanges<std::int64_t> computeBlockRanges(const TypedVolumeView<std::int64_t>&,
-                                                      const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<std::int64_t>&,
-                                                 const BlockGrid&, std::int64_t);
-template BlockRanges<float> computeBlockRanges(const TypedVolumeView<float>&, const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<float>&, const BlockGrid&,
-                                                 float);
-template BlockRanges<double> computeBlockRanges(const TypedVolumeView<double>&, const BlockGrid&);
-template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<double>&, const BlockGrid&,
-                                                 double);
+#define ADAPTISO_INSTANTIATE(T)                                                                   \
+    template BlockRanges<T> computeBlockRanges(const TypedVolumeView<T>&, const BlockGrid&);      \
+    template std::vector<std::uint32_t> blocksAround(const TypedVolumeView<T>&, const BlockGrid&, \
+                                                     T);
+ADAPTISO_FOR_EACH_SAMPLE_TYPE(ADAPTISO_INSTANTIATE)
+#undef ADAPTISO_INSTANTIATE
 
 }  // namespace adaptiso::detail

@@ -8,6 +8,12 @@
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/SpanSpace/BlockGrid.h"
 
+/// Calls a macro with every type of sample: for explicit instantiations.
+#define ADAPTISO_FOR_EACH_SAMPLE_TYPE(macro)                                              \
+    macro(std::uint8_t) macro(std::int8_t) macro(std::uint16_t) macro(std::int16_t)       \
+        macro(std::uint32_t) macro(std::int32_t) macro(std::uint64_t) macro(std::int64_t) \
+            macro(float) macro(double)
+
 namespace adaptiso::detail {
 
 /// Smallest and largest sample of every block, in the volume's own type, indexed by block number.

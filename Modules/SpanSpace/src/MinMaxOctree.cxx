@@ -96,15 +96,8 @@ std::size_t MinMaxOctree<T>::memoryBytes() const {
     return nodes * 2 * sizeof(T);
 }
 
-template class MinMaxOctree<std::uint8_t>;
-template class MinMaxOctree<std::int8_t>;
-template class MinMaxOctree<std::uint16_t>;
-template class MinMaxOctree<std::int16_t>;
-template class MinMaxOctree<std::uint32_t>;
-template class MinMaxOctree<std::int32_t>;
-template class MinMaxOctree<std::uint64_t>;
-template class MinMaxOctree<std::int64_t>;
-template class MinMaxOctree<float>;
-template class MinMaxOctree<double>;
+#define ADAPTISO_INSTANTIATE(T) template class MinMaxOctree<T>;
+ADAPTISO_FOR_EACH_SAMPLE_TYPE(ADAPTISO_INSTANTIATE)
+#undef ADAPTISO_INSTANTIATE
 
 }  // namespace adaptiso::detail

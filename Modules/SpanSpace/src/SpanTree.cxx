@@ -172,15 +172,8 @@ std::int64_t SpanTree<T>::search(T threshold, std::vector<std::uint32_t>& found)
     return walk.visited;
 }
 
-template class SpanTree<std::uint8_t>;
-template class SpanTree<std::int8_t>;
-template class SpanTree<std::uint16_t>;
-template class SpanTree<std::int16_t>;
-template class SpanTree<std::uint32_t>;
-template class SpanTree<std::int32_t>;
-template class SpanTree<std::uint64_t>;
-template class SpanTree<std::int64_t>;
-template class SpanTree<float>;
-template class SpanTree<double>;
+#define ADAPTISO_INSTANTIATE(T) template class SpanTree<T>;
+ADAPTISO_FOR_EACH_SAMPLE_TYPE(ADAPTISO_INSTANTIATE)
+#undef ADAPTISO_INSTANTIATE
 
 }  // namespace adaptiso::detail

@@ -376,14 +376,7 @@ SurfaceLoops<Id> makeAscLoops(const LatticeSampler& sampler, const ActiveBlocks&
 #define ADAPTISO_INSTANTIATE(N, Id)                                                           \
     template SurfaceLoops<Id> makeAscLoops<N, Id>(const LatticeSampler&, const ActiveBlocks&, \
                                                   ExtractionStatistics&);
-ADAPTISO_INSTANTIATE(2, std::uint32_t)
-ADAPTISO_INSTANTIATE(4, std::uint32_t)
-ADAPTISO_INSTANTIATE(8, std::uint32_t)
-ADAPTISO_INSTANTIATE(16, std::uint32_t)
-ADAPTISO_INSTANTIATE(2, std::uint64_t)
-ADAPTISO_INSTANTIATE(4, std::uint64_t)
-ADAPTISO_INSTANTIATE(8, std::uint64_t)
-ADAPTISO_INSTANTIATE(16, std::uint64_t)
+ADAPTISO_FOR_EACH_BLOCK_SIZE_AND_ID(ADAPTISO_INSTANTIATE)
 #undef ADAPTISO_INSTANTIATE
 
 }  // namespace adaptiso::detail

@@ -369,14 +369,7 @@ BoxSurface<N, Id> makeBoxSurface(const LatticeSampler& sampler, ActiveBlocks act
     template BoxSurface<N, Id> makeBoxSurface<N, Id>(const LatticeSampler&, ActiveBlocks, \
                                                      Division, MergeReach);               \
     template HalfEdgeRef twinAcrossFace<N, Id>(const BoxSurface<N, Id>&, const HalfEdgeRef&);
-ADAPTISO_INSTANTIATE(2, std::uint32_t)
-ADAPTISO_INSTANTIATE(4, std::uint32_t)
-ADAPTISO_INSTANTIATE(8, std::uint32_t)
-ADAPTISO_INSTANTIATE(16, std::uint32_t)
-ADAPTISO_INSTANTIATE(2, std::uint64_t)
-ADAPTISO_INSTANTIATE(4, std::uint64_t)
-ADAPTISO_INSTANTIATE(8, std::uint64_t)
-ADAPTISO_INSTANTIATE(16, std::uint64_t)
+ADAPTISO_FOR_EACH_BLOCK_SIZE_AND_ID(ADAPTISO_INSTANTIATE)
 #undef ADAPTISO_INSTANTIATE
 
 }  // namespace adaptiso::detail

@@ -14,6 +14,12 @@
 #include "lattice/BlockVertices.h"
 #include "lattice/LatticeSampler.h"
 
+/// Calls a macro with every block size and type of ids: for explicit instantiations.
+#define ADAPTISO_FOR_EACH_BLOCK_SIZE_AND_ID(macro)                               \
+    macro(2, std::uint32_t) macro(4, std::uint32_t) macro(8, std::uint32_t)      \
+        macro(16, std::uint32_t) macro(2, std::uint64_t) macro(4, std::uint64_t) \
+            macro(8, std::uint64_t) macro(16, std::uint64_t)
+
 namespace adaptiso::detail {
 
 /// A half-edge of the surface before merging: the vertex where it starts, and two marks. While a

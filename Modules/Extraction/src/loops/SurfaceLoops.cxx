@@ -315,14 +315,7 @@ SurfaceLoops<Id> makeSurfaceLoops(BoxSurface<N, Id> surface) {
 
 #define ADAPTISO_INSTANTIATE(N, Id) \
     template SurfaceLoops<Id> makeSurfaceLoops<N, Id>(BoxSurface<N, Id>);
-ADAPTISO_INSTANTIATE(2, std::uint32_t)
-ADAPTISO_INSTANTIATE(4, std::uint32_t)
-ADAPTISO_INSTANTIATE(8, std::uint32_t)
-ADAPTISO_INSTANTIATE(16, std::uint32_t)
-ADAPTISO_INSTANTIATE(2, std::uint64_t)
-ADAPTISO_INSTANTIATE(4, std::uint64_t)
-ADAPTISO_INSTANTIATE(8, std::uint64_t)
-ADAPTISO_INSTANTIATE(16, std::uint64_t)
+ADAPTISO_FOR_EACH_BLOCK_SIZE_AND_ID(ADAPTISO_INSTANTIATE)
 #undef ADAPTISO_INSTANTIATE
 
 }  // namespace adaptiso::detail
