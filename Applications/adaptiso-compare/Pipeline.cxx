@@ -18,7 +18,6 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
-#include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/Report/Report.h"
 
 namespace adaptiso::compare {
@@ -49,23 +48,8 @@ NamedMesh readSurface(const fs::path& path, std::optional<CoordinateFrame> state
 
 /// \param frame  as the file has it
 SurfaceSummary summarize(const NamedMesh& surface, std::optional<CoordinateFrame> frame) {
-    const TriangleMesh& mesh = surface.file.mesh;
-    SurfaceSummary summary;
-    summary.file = surface.path;
-    summary.format = surface.file.format;
-    summary.frame = frame;
-    summary.triangles = std::ssize(mesh.triangles);
-    summary.vertices = std::ssize(mesh.points);
-    summary.areaMm2 = surfaceArea(mesh);
-    if (!(summary.areaMm2 > 0)) {
-        throw InvalidInput(surface.path.string() +
-                           ": its triangles have no area, so there is nothing to measure");
-    }
-    const TopologyReport topology = checkTopology(mesh, {.maxExamplesPerDefect = 0});
-    if (topology.isClosed() && topology.isOriented()) summary.volumeMm3 = enclosedVolume(mesh);
-    const BoundingBox box = boundingBox(mesh);
-    summary.diagonalMm = norm(box.size());
-    return summary;
+    return {measureSize(surface.file.mesh, surface.path.string()), surface.path,
+            surface.file.format, frame};
 }
 
 /// The side of a cube as large as a voxel.

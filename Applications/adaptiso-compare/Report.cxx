@@ -17,14 +17,9 @@ namespace adaptiso::compare {
 namespace {
 
 Json surfaceJson(const SurfaceSummary& surface) {
-    return {{"file", baseName(surface.file)},
-            {"format", surface.format->name},
-            {"coordinates", frameJson(surface.frame)},
-            {"triangles", surface.triangles},
-            {"vertices", surface.vertices},
-            {"areaMm2", number(surface.areaMm2)},
-            {"volumeMm3", orNull(surface.volumeMm3)},
-            {"boundingBoxDiagonalMm", number(surface.diagonalMm)}};
+    return sizeJson(surface, {{"file", baseName(surface.file)},
+                              {"format", surface.format->name},
+                              {"coordinates", frameJson(surface.frame)}});
 }
 
 Json volumeJson(const CompareRun& run) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "Common/ProgramRun.h"
+#include "Common/SurfaceSize.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
@@ -22,15 +23,10 @@
 namespace adaptiso::compare {
 
 /// One of the two surfaces.
-struct SurfaceSummary {
+struct SurfaceSummary : SurfaceSize {
     std::filesystem::path file;
     const MeshFormat* format = nullptr;
     std::optional<CoordinateFrame> frame;  ///< empty: the file does not say
-    std::int64_t triangles = 0;
-    std::int64_t vertices = 0;
-    double areaMm2 = 0;
-    std::optional<double> volumeMm3;  ///< empty unless closed and oriented
-    double diagonalMm = 0;            ///< of the bounding box
 };
 
 /// The image of --volume.

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "Calls.h"
+#include "Common/SurfaceSize.h"
 #include "MeshData.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
-#include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/SurfaceChecks/CheckJson.h"
 
 namespace adaptiso::python {
@@ -48,23 +48,6 @@ std::string checkNested(const std::vector<std::shared_ptr<MeshData>>& meshes,
     return text;
 }
 
-/// adaptiso-compare's entry for one of the two.
-Json measuresOf(const TriangleMesh& mesh, const char* name) {
-    const double areaMm2 = surfaceArea(mesh);
-    if (!(areaMm2 > 0)) {
-        throw InvalidInput(std::string(name) +
-                           ": its triangles have no area, so there is nothing to measure");
-    }
-    const TopologyReport topology = checkTopology(mesh, {.maxExamplesPerDefect = 0});
-    const bool isSolid = topology.isClosed() && topology.isOriented();
-    const BoundingBox box = boundingBox(mesh);
-    return {{"triangles", mesh.triangles.size()},
-            {"vertices", mesh.points.size()},
-            {"areaMm2", number(areaMm2)},
-            {"volumeMm3", isSolid ? number(enclosedVolume(mesh)) : Json(nullptr)},
-            {"boundingBoxDiagonalMm", number(norm(box.size()))}};
-}
-
 std::string compareMeshes(const MeshData& a, const MeshData& b, std::int64_t samples,
                           bool isSymmetric, int threads, py::object progress) {
     Watcher watcher(std::move(progress));
@@ -76,11 +59,11 @@ std::string compareMeshes(const MeshData& a, const MeshData& b, std::int64_t sam
             return distances.samples == 0 ? Json(nullptr) : distanceJson(distances, toRas);
         };
         const TriangleMesh meshA = a.lps(), meshB = b.lps();
-        const Json measuresA = measuresOf(meshA, "a"), measuresB = measuresOf(meshB, "b");
+        const SurfaceSize sizeA = measureSize(meshA, "a"), sizeB = measureSize(meshB, "b");
         const DistanceReport report =
             surfaceDistance(meshA, meshB, {samples, isSymmetric, watcher.callback()});
-        text = dumped({{"a", measuresA},
-                       {"b", measuresB},
+        text = dumped({{"a", sizeJson(sizeA)},
+                       {"b", sizeJson(sizeB)},
                        {"options", {{"samples", samples}, {"symmetric", isSymmetric}}},
                        {"distances",
                         {{"aToB", told(report.aToB)},
