@@ -10,7 +10,7 @@ import { isChecked, kReport, number, outputsOf, type Page, reportOf, type Run, T
 import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kPreview: Color = [110, 190, 240];
-interface SurfaceReport { triangles: number; errorBoundMm: number | null; componentCount: number;
+interface SurfaceReport { triangles: number; errorBoundMm: number | null;
   soundness: { closed: boolean; crossingPairs: number | null } }
 
 export class MeshTab {
@@ -135,7 +135,7 @@ export class MeshTab {
       ...(surface.errorBoundMm === null ? [] : [`no point farther than ${Number(surface.errorBoundMm.toPrecision(3))} mm (proved)`]),
       surface.soundness.closed ? "closed" : "open",
       `${surface.soundness.crossingPairs ?? 0} pairs cross`,
-      `${formatCount(surface.componentCount)} piece${surface.componentCount === 1 ? "" : "s"}`].join("; ");
+      ...(/[\d,]+ pieces?(, [\d,]+ cavit(y|ies))?/.exec(done.stdout)?.slice(0, 1) ?? [])].join("; ");
     await this.task.show(title, run, done, [output]);
     this.task.addSave(`Save ${output.path}`, output.path, () => output.bytes, true);
     const report = done.files.find((file) => file.path === kReport);

@@ -165,6 +165,9 @@ export class CompareTab {
     task.addGlb("distance.glb", await this.meshes.show([{ path: colored.path, data: colored.bytes }], (shape) => {
       if (shape.values === null) return undefined;
       const most = shape.values.reduce((a, b) => Math.max(a, Math.abs(b)), 0) || 1, colors = new Uint8Array(4 * shape.values.length);
+      const scale = make("span", { className: "scale" });
+      scale.style.background = `linear-gradient(to right, ${kViridis.map((color) => `rgb(${color.join(" ")})`).join(", ")})`;
+      task.part(".verdict").after(make("p", { className: "hint" }, "0 mm", scale, mm(most)));
       shape.values.forEach((value, n) => {
         colors.set([...kViridis[Math.round(Math.min(1, Math.abs(value) / most) * (kViridis.length - 1))], 255], 4 * n);
       });

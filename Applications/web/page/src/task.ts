@@ -126,6 +126,7 @@ export class Task {
         `${done.seconds.toFixed(1)} s, ${formatBytes(done.memoryBytes)} of memory. Nothing was sent.`));
     this.part(".result").hidden = false;
     document.body.dataset.done = this.id;
+    requestAnimationFrame(() => this.part(".result").scrollIntoView({ block: "nearest" }));
   }
 
   addGlb(name: string, surfaces: Surface[]): void {

@@ -50,7 +50,7 @@ for (const browserName of kBrowsers) {
     it("shows a result of the example by one click", async () => {
       await press(page, "#example");
       assert.equal(await ended(page, "mesh"), "");
-      assert.match(await textOf(page, "#mesh .verdict"), /^[\d,]+ triangles; no point farther than 0\.(3|29\d) mm \(proved\); closed; 0 pairs cross/);
+      assert.match(await textOf(page, "#mesh .verdict"), /^[\d,]+ triangles; no point farther than 0\.(3|29\d) mm \(proved\); closed; 0 pairs cross; \d+ pieces?, \d+ cavit(y|ies)$/);
       await page.waitForFunction(() => document.body.dataset.shown === "example.stl", { timeout: 60_000 });
       await picture(page, `${browserName}-example`);
     });
@@ -346,6 +346,7 @@ for (const browserName of kBrowsers) {
       const colored = await saved(page, open.downloads, "#compare .saves .main", "distance.vtp");
       assert.equal(native(folder, ...(await textOf(page, "#compare .copy:nth-of-type(2) code")).split(" ")).status, 0);
       assert.deepEqual(colored, readFileSync(join(folder, "distance.vtp")));
+      assert.match(await textOf(page, "#compare .hint:has(.scale)"), /^0 mm\d+(\.\d+)? mm$/);
       await picture(page, `${browserName}-compare`);
     });
 
