@@ -74,7 +74,8 @@ private:
             if (n < kMostMends) changes = mendCrossings(attempt);
             if (!changes) {
                 if (reachMm > farthestMm()) return false;
-                changes = undoAround(attempt.surface, numbersOf(attempt.crossing), {}, reachMm);
+                changes = undoAround(attempt.surface, {},
+                                     cornersOf(attempt.surface, attempt.crossing), reachMm);
                 reachMm *= 2;
             }
             if (!changes) continue;
@@ -189,8 +190,13 @@ private:
         return points;
     }
 
-    static std::vector<SurfaceState::Number> numbersOf(const std::vector<std::int64_t>& triangles) {
-        return {triangles.begin(), triangles.end()};
+    static std::vector<Vec3> cornersOf(const SurfaceState& surface,
+                                       const std::vector<std::int64_t>& triangles) {
+        std::vector<Vec3> corners;
+        for (const std::int64_t t : triangles) {
+            for (const std::uint64_t v : surface.triangles[t]) corners.push_back(surface.points[v]);
+        }
+        return corners;
     }
     /// No undo goes farther: then all of the surface is the full one.
     double farthestMm() const { return 4 * full_.largestExtentMm(); }

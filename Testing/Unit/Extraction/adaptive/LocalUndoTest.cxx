@@ -13,6 +13,8 @@
 #include "Surfaces.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/SurfaceProof/PieceBound.h"
+#include "adaptive/AdaptiveMethod.h"
+#include "adaptive/full/VolumeSurface.h"
 #include "adaptive/mending/LocalUndo.h"
 #include "adaptive/mending/SurfaceMender.h"
 #include "adaptive/rounds/PatchRound.h"
@@ -82,6 +84,70 @@ std::set<std::array<Place, 3>> byCorners(const SurfaceState& surface) {
 }  // namespace
 
 // Merging the start's vertices into their heirs gives the surface.
+/// A ball beside a speck of one voxel. The speck counts as inside out as long as the ball's surface
+/// near it is not the full one.
+class BallBesideSpeck final : public detail::FullSurface {
+public:
+    BallBesideSpeck()
+        : FullSurface(unitFrame()),
+          scene_({32, 32, 32},
+                 [](const Vec3& p) {
+                     const double ball = 9 - norm(p - Vec3{14, 14, 14});
+                     return norm(p - kSpeck) < 0.5 ? 1 : ball;
+                 }),
+          full_(scene_.volume.view().geometry(), *scene_.sampler, scene_.bricks),
+          finePoints_(pointsNear(scene_.fullSurface())) {}
+
+    detail::SimplifiedSurface firstRound(const detail::PatchLimits& limits,
+                                         detail::CollapseCosts* costs) const override {
+        return full_.firstRound(limits, costs);
+    }
+    TriangleView fineOf(const detail::SimplifiedSurface& surface) const override {
+        return full_.fineOf(surface);
+    }
+    TriangleMesh meshOf(const detail::SimplifiedSurface& surface) const override {
+        return full_.meshOf(surface);
+    }
+    void forgiveCrossings(const TriangleMesh&, std::vector<std::int64_t>&) const override {}
+    std::vector<std::int64_t> insideOut(const detail::SimplifiedSurface& surface) const override {
+        std::vector<std::int64_t> speck;
+        if (pointsNear(surface) == finePoints_) return speck;
+        for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+            if (norm(surface.points[surface.triangles[t][0]] - kSpeck) < 1.1) {
+                speck.push_back(static_cast<std::int64_t>(t));
+            }
+        }
+        return speck;
+    }
+    double largestExtentMm() const override { return full_.largestExtentMm(); }
+
+private:
+    static constexpr Vec3 kSpeck{26, 14, 14};
+
+    static std::size_t pointsNear(const SurfaceState& surface) {
+        std::set<std::uint32_t> points;
+        for (const auto& t : surface.triangles) {
+            for (const std::uint32_t v : t) {
+                if (norm(surface.points[v] - kSpeck) < 6) points.insert(v);
+            }
+        }
+        return points.size();
+    }
+
+    Scene scene_;
+    detail::VolumeSurface full_;
+    std::size_t finePoints_;
+};
+
+TEST(LocalUndo, GoesFartherAroundPiecesThatStayInsideOut) {
+    // the speck's own corners were merged with none: to take these apart changes nothing
+    const BallBesideSpeck full;
+    const detail::AdaptiveResult made = detail::simplifyWithin(full, {}, {});
+    EXPECT_GT(made.work.verticesUndone, 50);
+    EXPECT_EQ(made.work.runs, 1);
+    EXPECT_TRUE(isSound(made.mesh));
+}
+
 TEST(LocalUndo, StandsOnHeirsThatMakeTheSurface) {
     const CoarseSphere sphere;
     ASSERT_LT(sphere.surface.triangles.size(), sphere.start.triangles.size() / 4);

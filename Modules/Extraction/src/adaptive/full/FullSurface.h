@@ -44,9 +44,6 @@ public:
         return {};
     }
 
-    /// A point of meshOf(), as a continuous index of the frame.
-    virtual Vec3 indexOf(const Vec3& point) const = 0;
-
     /// Removes from `crossing`, triangles of meshOf() that cross others, those that did so from the
     /// beginning.
     virtual void forgiveCrossings(const TriangleMesh& mesh,

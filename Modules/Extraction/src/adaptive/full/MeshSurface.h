@@ -28,9 +28,6 @@ public:
     TriangleView fineOf(const SimplifiedSurface&) const override { return parts_.view(); }
     /// Without normals.
     TriangleMesh meshOf(const SimplifiedSurface& surface) const override;
-    Vec3 indexOf(const Vec3& point) const override {
-        return frame().toIndex(point - parts_.origin);
-    }
     void forgiveCrossings(const TriangleMesh& mesh,
                           std::vector<std::int64_t>& crossing) const override;
     std::vector<std::int64_t> insideOut(const SimplifiedSurface& surface) const override;

@@ -27,7 +27,6 @@ public:
     TriangleMesh meshOf(const SimplifiedSurface& surface) const override;
     std::vector<std::uint64_t> cellsOf(const SimplifiedSurface& surface,
                                        const std::vector<std::uint8_t>& isFine) const override;
-    Vec3 indexOf(const Vec3& point) const override { return geometry_.toIndex(point); }
     void forgiveCrossings(const TriangleMesh&, std::vector<std::int64_t>&) const override {}
     std::vector<std::int64_t> insideOut(const SimplifiedSurface& surface) const override;
     double largestExtentMm() const override;
