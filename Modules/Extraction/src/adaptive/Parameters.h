@@ -126,9 +126,6 @@ inline constexpr double kBentCosine = 0.94;
 /// closed border were simplified within noise that stays, which took four times as long for a tenth
 /// of the triangles (noise blurred by a voxel, 64^3).
 inline constexpr double kNoiseCrossed = 0.45, kNoiseSingle = 0.1, kNoiseBent = 0.5;
-/// Vertices are in one plane where their area vectors add up to their area but for this part; a
-/// brick with fewer of them than that part is not searched for flat boxes.
-inline constexpr double kFlatPart = 1e-9, kFewFlat = 0.05;
 /// Lists of all bricks get room for this many times what the bricks so far took, scaled to all of
 /// them; at least and at most so many times what they hold.
 inline constexpr double kRoomToGrow = 1.1, kLeastGrowth = 1.125, kMostGrowth = 1024;

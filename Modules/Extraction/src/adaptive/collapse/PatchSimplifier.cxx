@@ -87,27 +87,6 @@ void PatchSimplifier::apply(const Change& change) {
     patch_.points[change.vertex] = change.star.vertex;
 }
 
-void PatchSimplifier::clusterFlatVertices(const std::vector<std::uint8_t>& isFlat, int largestSide,
-                                          std::vector<double>* costs) {
-    const auto boxAt = [&](std::uint32_t v, int side) {
-        const Vec3 index = frame_.toIndex(patch_.points[v]);
-        return Index3{static_cast<std::int64_t>(std::floor(index.x / side)),
-                      static_cast<std::int64_t>(std::floor(index.y / side)),
-                      static_cast<std::int64_t>(std::floor(index.z / side))};
-    };
-    for (int side = 2; side <= largestSide; side *= 2) {
-        for (std::uint32_t h = 0; h < 3 * patch_.ownTriangles; ++h) {
-            if (patch_.triangles[h / 3][0] == Patch::kGone) continue;
-            const std::uint32_t a = topology_.from(h), b = topology_.to(h);
-            if (isFlat[a] == 0 || isFlat[b] == 0 || !mayChange(a) || !mayChange(b)) continue;
-            if (boxAt(a, side) != boxAt(b, side)) continue;
-            if (evaluateCollapse(h) != Refusal::None) continue;
-            apply(change_);
-            if (costs != nullptr) costs->push_back(0);
-        }
-    }
-}
-
 void PatchSimplifier::collapseEdges(std::int64_t most, std::vector<double>* costs) {
     CollapseQueue queue(topology_, patch_);
     queue.fill(patch_, [&](std::uint32_t h) {

@@ -35,14 +35,6 @@ class PatchSimplifier {
 public:
     PatchSimplifier(Patch& patch, const MetricFrame& frame, const PatchLimits& limits);
 
-    /// Makes one vertex of those that lie in the same box of the lattice, in boxes of 2, 4, ...
-    /// cells a side, where the surface is flat: there any order is as good, and none has to wait.
-    /// \param isFlat       of each vertex: all triangles around it lie in one plane
-    /// \param largestSide  cells
-    /// \param costs        gets a 0 for each collapse; may be null
-    void clusterFlatVertices(const std::vector<std::uint8_t>& isFlat, int largestSide,
-                             std::vector<double>* costs);
-
     /// Collapses edges until none is left within the limits, at most `most` of them.
     /// \param costs  gets the cost of each, in order; may be null
     void collapseEdges(std::int64_t most, std::vector<double>* costs);

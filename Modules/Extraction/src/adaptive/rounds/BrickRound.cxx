@@ -163,20 +163,6 @@ void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, const N
     }
 }
 
-/// Vertices whose triangles all lie in one plane: their area vectors add up to their area.
-/// \return nothing where they are few
-std::vector<std::uint8_t> flatVertices(const Patch& patch, const std::vector<Vec3>& areas) {
-    std::vector<std::uint8_t> isFlat(areas.size());
-    std::size_t count = 0;
-    for (std::size_t v = 0; v < areas.size(); ++v) {
-        const double area2 = 2 * patch.quadrics[v].weight();
-        isFlat[v] = static_cast<std::uint8_t>(norm(areas[v]) >= (1 - kFlatPart) * area2);
-        count += isFlat[v];
-    }
-    if (static_cast<double>(count) < kFewFlat * static_cast<double>(isFlat.size())) return {};
-    return isFlat;
-}
-
 /// The brick's full-resolution surface as it is made, metric frame.
 struct FineBrick {
     FineSurface surface;
@@ -279,10 +265,8 @@ BrickSurface wholeBrick(const FineBrick& fine) {
 }
 
 /// The brick's full-resolution surface as a patch; vertices on walls go to the brick's list.
-/// \param webMm   see PatchLimits
-/// \param isFlat  gets what flatVertices() says
-Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, BrickSurface& brick,
-              std::vector<std::uint8_t>& isFlat) {
+/// \param webMm  see PatchLimits
+Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, BrickSurface& brick) {
     const FineSurface& fine = made.surface;
     Patch patch;
     patch.points = made.points;
@@ -290,7 +274,6 @@ Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, Bri
     patch.triangles = fine.triangles;
     patch.ownTriangles = static_cast<std::uint32_t>(fine.triangles.size());
     const std::vector<Vec3> areas = addQuadrics(patch);
-    isFlat = flatVertices(patch, areas);
     const Nearness near = nearnessOf(fine, patch.points, areas, frame, webMm);
     const std::vector<std::uint32_t> triangleAt = trianglesAt(fine);
     for (std::uint32_t v = 0; v < fine.vertices.size(); ++v) {
@@ -316,8 +299,7 @@ BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const 
                            const PatchLimits& limits, const BoundingBox* moving,
                            std::vector<double>* costs) {
     BrickSurface result;
-    std::vector<std::uint8_t> isFlat;
-    Patch patch = patchOf(made, frame, limits.webMm, result, isFlat);
+    Patch patch = patchOf(made, frame, limits.webMm, result);
     patch.setBox(lowIndex, Brick::kSide);
     for (std::size_t v = 0; v < patch.points.size(); ++v) {
         const Vec3& index = made.surface.vertices[v].index;
@@ -327,9 +309,6 @@ BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const 
     patch.heirs.resize(patch.points.size());
     std::iota(patch.heirs.begin(), patch.heirs.end(), 0U);
     PatchSimplifier simplifier(patch, frame, limits);
-    if (limits.maxCost > 0 && !isFlat.empty()) {
-        simplifier.clusterFlatVertices(isFlat, Brick::kSide / 2, costs);
-    }
     simplifier.collapseEdges(patch.ownTriangles, costs);
     const std::vector<std::uint32_t> newVertex = takeOver(patch, result);
     keepFine(
