@@ -83,19 +83,9 @@ inline constexpr double kFarFromCount = 1.6;
 /// Up to this part of the wanted count the rest is dealt out by size: the patches' costs hardly
 /// differ.
 inline constexpr double kNearCount = 1.05;
-/// Where some patches tell for all, this part of the wanted collapses is aimed at, so that it does
-/// not become more of them.
-inline constexpr double kTrialAim = 0.95;
 /// A round that drops less than this part of the triangles that are too many hardly brings the
 /// count nearer: the limit of cost grows sixteenfold then.
 inline constexpr double kHardly = 0.05;
-/// A round may lead to the count where the one before made this part of the collapses that are left
-/// to make: it is tried out first. Else a trial is half of the round's time for nothing.
-inline constexpr double kLikely = 0.5;
-/// A trial takes every eighth patch, or as many as to have 16 of them. With fewer than 32 patches
-/// there is none: the round itself takes no longer, and is taken back where it leads below the
-/// count.
-inline constexpr std::size_t kTrialFewest = 16, kTrialEvery = 8;
 /// Up to the first cost cubes are as large as bricks, up to the second half as large again, above
 /// twice as large: else too much would straddle them. Small ones stay in a processor's cache. With
 /// 0.7 for the second, kBoundCosts' last has the middle cubes as well: by a bound 1 to 2 % fewer

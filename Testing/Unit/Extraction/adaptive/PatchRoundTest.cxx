@@ -97,32 +97,6 @@ TEST(PatchRound, MakesNoMoreCollapsesThanAsked) {
     }
 }
 
-TEST(PatchRound, TriesOutWhatItWouldDo) {
-    Ball ball;
-    const SimplifiedSurface before = ball.surface;
-    const detail::PatchCut small{4, {}};
-    const auto trial = PatchRound(ball.surface, small, ball.scene.frame).tryOut(Ball::limits());
-    EXPECT_EQ(ball.surface.points, before.points);
-    EXPECT_EQ(ball.surface.triangles, before.triangles);
-    EXPECT_EQ(ball.surface.sampleTriangle, before.sampleTriangle);
-    EXPECT_EQ(ball.surface.states, before.states);
-    ASSERT_TRUE(trial);
-    EXPECT_GT(trial->collapses(), 0);
-    EXPECT_GT(trial->share, 0.1);
-    EXPECT_LT(trial->share, 0.6);
-    detail::CollapseCosts costs;
-    PatchRound(ball.surface, small, ball.scene.frame).run({Ball::limits()}, &costs);
-    for (const auto& patch : trial->costs) {
-        EXPECT_NE(std::find(costs.begin(), costs.end(), patch), costs.end());
-        for (const double cost : patch) EXPECT_LE(cost, Ball::limits().maxCost);
-    }
-}
-
-TEST(PatchRound, TriesNothingOutWhereThatWouldTakeAllPatches) {
-    Ball ball;
-    EXPECT_FALSE(PatchRound(ball.surface, kCut, ball.scene.frame).tryOut(Ball::limits()));
-}
-
 TEST(PatchRound, LendsAPatchOfAllTheSamplesAndGetsThemBack) {
     // the second cut has the ball in one cube, and a vertex without triangles in another: so its
     // samples are copied

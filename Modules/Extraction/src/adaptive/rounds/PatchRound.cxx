@@ -66,12 +66,6 @@ void removeGone(SimplifiedSurface& surface, const std::vector<Number>& mergedInt
 
 }  // namespace
 
-std::int64_t PatchTrial::collapses() const {
-    std::int64_t count = 0;
-    for (const auto& patch : costs) count += std::ssize(patch);
-    return count;
-}
-
 PatchRound::PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame)
     : surface_(surface), frame_(frame) {
     groups_.emplace(surface, cut, frame);
@@ -81,32 +75,6 @@ PatchRound::PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const Me
 /// largest list of all. Called again it gives them back.
 void PatchRound::lendSamples(Patch& patch) const {
     if (groups_->isOne()) patch.samples.swap(surface_.samples);
-}
-
-std::optional<PatchTrial> PatchRound::tryOut(const PatchLimits& limits) const {
-    std::vector<std::size_t> all, some;
-    for (std::size_t n = 0; n < groups_->count(); ++n) {
-        if (!groups_->isIdle(n)) all.push_back(n);
-    }
-    const std::size_t every = std::min(all.size() / kTrialFewest, kTrialEvery);
-    if (every < 2) return {};
-    double triangles = 0, tried = 0;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto count = static_cast<double>(groups_->triangleCount(all[i]));
-        triangles += count;
-        if (i % every != every / 2) continue;
-        some.push_back(all[i]);
-        tried += count;
-    }
-    PatchTrial trial;
-    trial.costs.resize(some.size());
-    trial.share = tried / triangles;
-    PerThread<PatchScratch> scratches;
-    parallelForPieces(std::ssize(some), 1, [&](std::int64_t i, std::int64_t) {
-        Patch patch = groups_->take(some[i], scratches.local());
-        PatchSimplifier(patch, frame_, limits).collapseEdges(patch.ownTriangles, &trial.costs[i]);
-    });
-    return trial;
 }
 
 void PatchRound::run(const PatchWork& work, CollapseCosts* costs) {

@@ -20,23 +20,11 @@ struct PatchWork {
     bool fits = false;
 };
 
-/// Estimate of a round, from some of its patches.
-struct PatchTrial {
-    CollapseCosts costs;  ///< of their collapses
-    double share = 1;     ///< of all patches' triangles
-
-    std::int64_t collapses() const;
-};
-
 /// Works on the surface in the patches of a cut, side by side. Triangles that straddle two cubes
 /// stay as they are.
 class PatchRound {
 public:
     PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame);
-
-    /// Collapses edges in copies of some patches, spread over the surface; none where they are so
-    /// few that it would be all of them.
-    std::optional<PatchTrial> tryOut(const PatchLimits& limits) const;
 
     /// Once.
     /// \param costs  gets those of the collapses, patch by patch; may be null

@@ -50,17 +50,6 @@ double costStep(std::int64_t triangles, std::int64_t target, std::int64_t collap
     return part > 1.4 ? 4 : 2;
 }
 
-/// Lowers the limit of cost to where as many collapses are made as wanted; leaves it where that
-/// many are not reached. \return whether they are
-bool landOn(std::int64_t wanted, const PatchTrial& trial, PatchWork& work) {
-    const double part = trial.share < 1 ? kTrialAim * trial.share : 1;
-    const auto most = static_cast<std::int64_t>(part * static_cast<double>(wanted));
-    if (trial.collapses() <= most) return false;
-    work.limits.maxCost = costLimitFor(trial.costs, most);
-    work.fits = true;
-    return true;
-}
-
 /// Within some times the target.
 bool isWithin(double times, std::int64_t triangles, std::int64_t target) {
     return static_cast<double>(triangles) <= times * static_cast<double>(target);
@@ -159,9 +148,8 @@ SimplifiedSurface Simplification::toLimits() {
     return surface;
 }
 
-/// A round up to a cost that does not lead below the target: where it may, some patches tell by a
-/// trial up to which cost it makes as many collapses as wanted. Where it did all the same it is
-/// made again, up to the cost that its own collapses tell.
+/// A round up to a cost that does not lead below the target. Where it did it is made again, up to
+/// the cost by which its own collapses were as many as wanted.
 void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t target, double cost) {
     limits_.maxCost = std::min(cost * costUnit_, std::numeric_limits<double>::max());
     const std::int64_t before = surface.triangleCount(), wanted = (before - target + 1) / 2;
@@ -170,7 +158,6 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     const bool dealsOut = times < kNearCount || isTied_;
     const bool isNear = times <= kFarFromCount;  // from afar not reached but by a cost far too high
     const bool maySurpass = isNear && !dealsOut;
-    bool isLanding = false;
     PatchWork work{limits_};
     if (!maySurpass) {
         work.mostCollapses = wanted;
@@ -179,28 +166,19 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
     std::optional<Checkpoint> kept;
     CollapseCosts costs;
     if (maySurpass) kept.emplace(surface);
-    {
-        PatchRound round(surface, cut, frame_);
-        const bool isLikely =
-            static_cast<double>(collapsed_) >= kLikely * static_cast<double>(wanted) ||
-            (cost > kLastCost && limits_.triedCost <= kLastCost * costUnit_);
-        if (maySurpass && isLikely) {
-            const auto trial = round.tryOut(limits_);
-            isLanding = trial && landOn(wanted, *trial, work);
-        }
-        round.run(work, maySurpass ? &costs : nullptr);
-    }
-    if (maySurpass && surface.triangleCount() + 1 < target) {
+    PatchRound(surface, cut, frame_).run(work, maySurpass ? &costs : nullptr);
+    const bool hasSurpassed = maySurpass && surface.triangleCount() + 1 < target;
+    if (hasSurpassed) {
         kept->restore(surface);
-        work = PatchWork{limits_};
-        isLanding = landOn(wanted, {std::move(costs)}, work);
+        work.limits.maxCost = costLimitFor(costs, wanted);
+        work.fits = true;
         PatchRound(surface, cut, frame_).run(work);
     }
     fits_ = work.fits ? fits_ + 1 : 0;
     limits_.triedCost = work.limits.maxCost;
     collapsed_ = (before - surface.triangleCount()) / 2;
     // where costs are equal, as on flat parts, a limit leaves all or none: the next round deals out
-    isTied_ = isLanding && before - surface.triangleCount() < wanted;
+    isTied_ = hasSurpassed && before - surface.triangleCount() < wanted;
 }
 
 SimplifiedSurface Simplification::toCount(const WantedCount& wanted, double farthestMm) {
