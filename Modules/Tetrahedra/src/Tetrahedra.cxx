@@ -16,6 +16,12 @@ namespace adaptiso {
 
 namespace {
 
+/// std::ssize() is of a type that ByteSink does not know where addresses have 32 bits.
+template <class T>
+std::int64_t countOf(const T& items) {
+    return std::ssize(items);
+}
+
 /// The least angle between two faces of an element, degrees.
 double leastDihedralDeg(const TetrahedralMesh& mesh, const std::array<VertexId, 4>& t) {
     std::array<Vec3, 4> outward;
@@ -166,7 +172,7 @@ std::string quotable(std::string name) {
 }
 
 void writeNames(ByteSink& file, std::span<const TetrahedraRegion> regions) {
-    file << "$PhysicalNames\n" << std::ssize(regions) << "\n";
+    file << "$PhysicalNames\n" << countOf(regions) << "\n";
     for (const TetrahedraRegion& region : regions) {
         file << "3 " << std::int64_t{region.label} << " \"" << quotable(region.name) << "\"\n";
     }
@@ -228,10 +234,10 @@ void writeMsh22(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> r
     writeBytes(path, [&](ByteSink& file) {
         file << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
         writeNames(file, regions);
-        file << "$Nodes\n" << std::ssize(mesh.points) << "\n";
+        file << "$Nodes\n" << countOf(mesh.points) << "\n";
         std::int64_t number = 0;
         for (const Vec3& p : mesh.points) file << ++number << " " << p << "\n";
-        file << "$EndNodes\n$Elements\n" << std::ssize(walls) + std::ssize(mesh.tetrahedra) << "\n";
+        file << "$EndNodes\n$Elements\n" << countOf(walls) + countOf(mesh.tetrahedra) << "\n";
         std::int64_t element = 0;
         for (const Wall& wall : walls) {
             const std::int64_t tag = 1000 + std::int64_t{wall.label};
@@ -264,7 +270,7 @@ void writeMsh41(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> r
     writeBytes(path, [&](ByteSink& file) {
         file << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
         writeNames(file, regions);
-        file << "$Entities\n0 0 0 " << std::ssize(regions) << "\n";
+        file << "$Entities\n0 0 0 " << countOf(regions) << "\n";
         for (const TetrahedraRegion& region : regions) {
             const std::int64_t tissue = region.label;
             file << tissue << " " << low << " " << high << " 1 " << tissue << " 0\n";
@@ -274,7 +280,7 @@ void writeMsh41(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> r
         for (std::int64_t n = 1; n <= points; ++n) file << n << "\n";
         for (const Vec3& p : mesh.points) file << p << "\n";
         file << "$EndNodes\n$Elements\n"
-             << std::ssize(regions) << " " << elements << " 1 " << elements << "\n";
+             << countOf(regions) << " " << elements << " 1 " << elements << "\n";
         std::int64_t number = 0;
         for (const TetrahedraRegion& region : regions) {
             const std::int32_t tissue = region.label;
@@ -295,7 +301,7 @@ void writeVtu(const TetrahedralMesh& mesh, const std::filesystem::path& path) {
     writeBytes(path, [&](ByteSink& file) {
         file << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
                 "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\""
-             << std::ssize(mesh.points) << "\" NumberOfCells=\"" << elements
+             << countOf(mesh.points) << "\" NumberOfCells=\"" << elements
              << "\">\n<CellData Scalars=\"tissue\">\n<DataArray type=\"Int32\" Name=\"tissue\" "
                 "format=\"ascii\">\n";
         for (const std::int64_t tissue : mesh.labels) file << tissue << "\n";
