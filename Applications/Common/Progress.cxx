@@ -1,6 +1,5 @@
 #include "Common/Progress.h"
 
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -59,33 +58,6 @@ void ProgressLine::clear() {
 ProgressCallback ProgressLine::callback() {
     if (!isShown_) return {};
     return [this](std::string_view stage, double fraction) { show(stage, fraction); };
-}
-
-double peakMemoryMb() {
-#ifdef __EMSCRIPTEN__  // the memory that a page gives to WebAssembly grows and does not shrink
-    return static_cast<double>(__builtin_wasm_memory_size(0)) * 65536 / 1e6;
-#else
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts KiB
-#endif
-}
-
-double StageTimer::seconds(std::string_view stage) const {
-    for (const auto& [name, seconds] : stages_) {
-        if (name == stage) return seconds;
-    }
-    return 0;
-}
-
-void StageTimer::add(std::string_view stage, double seconds) {
-    for (auto& [name, sum] : stages_) {
-        if (name == stage) {
-            sum += seconds;
-            return;
-        }
-    }
-    stages_.emplace_back(stage, seconds);
 }
 
 void printTimes(std::ostream& out, const StageTimer& timer, int decimals) {

@@ -1,7 +1,6 @@
 #include "Calls.h"
 
 #include <cxxabi.h>
-#include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
@@ -170,12 +169,6 @@ void afterForkInChild() {
     if (forkedDuringCall) hasOneThread = true;
     unlockedThreads = 0;  // the child has this thread alone
     workers() = new tbb::task_scheduler_handle{tbb::attach{}};
-}
-
-double peakMemoryMb() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts KiB
 }
 
 }  // namespace adaptiso::python

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -16,6 +15,7 @@
 #include "Arrays.h"
 #include "Calls.h"
 #include "Common/AtomicOutput.h"
+#include "Common/Json.h"
 #include "MeshData.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
@@ -95,25 +95,13 @@ private:
     std::shared_ptr<ArrayVolume> shown_;  ///< the main image
     bool isLoose_ = false;                ///< in tkRAS of a volume that is not known
     int threads_ = 0;
-    std::vector<std::pair<std::string, double>> seconds_;  ///< by stage
-    double totalSeconds_ = 0;
+    Json seconds_;
     double peakMemoryMb_ = 0;
 };
 
 namespace {
 
 namespace fs = std::filesystem;
-
-void addSeconds(std::vector<std::pair<std::string, double>>& stages, std::string_view stage,
-                double seconds) {
-    const auto known = std::find_if(stages.begin(), stages.end(),
-                                    [&](const auto& entry) { return entry.first == stage; });
-    if (known == stages.end()) {
-        stages.emplace_back(stage, seconds);
-    } else {
-        known->second += seconds;
-    }
-}
 
 /// tkRAS of an unknown volume.
 bool isLooseTkRas(const MeshData& surface) {
@@ -253,13 +241,11 @@ std::shared_ptr<HeadModelData> HeadModelData::make(const HeadSources& sources,
         model.tkRasVolume = frameVolume(CoordinateFrame::TkRas, *model.image);
     }
     Watcher watcher(std::move(progress));
-    const auto begin = std::chrono::steady_clock::now();
+    StageTimer timer;
     watcher.run(threads, [&] {
         const BemHooks hooks{[&](std::string_view stage, const std::function<void()>& work) {
                                  watcher.tell(stage, 0);
-                                 const auto start = std::chrono::steady_clock::now();
-                                 work();
-                                 addSeconds(data->seconds_, stage, secondsSince(start));
+                                 timer.time(stage, work);
                              },
                              watcher.callback()};
         std::vector<TriangleMesh> dense = firstSurfaces(sources, model, hooks);
@@ -271,7 +257,7 @@ std::shared_ptr<HeadModelData> HeadModelData::make(const HeadSources& sources,
         putSources(model, hooks);
         watcher.tell("check", 1);
     });
-    data->totalSeconds_ = secondsSince(begin);
+    data->seconds_ = secondsJson(timer);
     data->peakMemoryMb_ = peakMemoryMb();
     return data;
 }
@@ -330,10 +316,7 @@ std::string HeadModelData::reportOf(const BemModel& model, const BemFileOptions&
     report["output"] = bemOutputJson(model, options, files);
     report["failedByWarnings"] = false;
     report["reportFailure"] = nullptr;
-    Json seconds = Json::object();
-    for (const auto& [stage, time] : seconds_) seconds[stage] = time;
-    seconds["total"] = totalSeconds_;
-    report["seconds"] = seconds;
+    report["seconds"] = seconds_;
     report["peakMemoryMb"] = peakMemoryMb_;
     return jsonText(report) + "\n";
 }

@@ -11,6 +11,7 @@
 
 #include "Arrays.h"
 #include "Calls.h"
+#include "Common/Progress.h"
 #include "MeshData.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
