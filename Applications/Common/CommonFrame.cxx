@@ -139,7 +139,7 @@ void declareInputCoordinates(const OptionGroup& group, std::vector<CoordinateFra
     };
     group.values("--input-coordinates", choiceName(kFrameWords), take,
                  "The frame of " + surfaces +
-                     ", whatever the file says of it: scanner RAS mm, scanner LPS mm, "
+                     ", overriding the file's own: scanner RAS mm, scanner LPS mm, "
                      "FreeSurfer's surface RAS mm, or voxel indices (default: as the file says)");
 }
 

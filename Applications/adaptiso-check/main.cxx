@@ -135,8 +135,8 @@ warning with --strict, 2 wrong usage, 3 bad input (or no memory or disk left),
 checked; the exit code is then 3.)";
 
 Program checkProgram() {
-    return {"adaptiso-check", "Says whether triangle surfaces are sound, and where they are not.",
-            kFooter};
+    return {"adaptiso-check",
+            "Checks whether triangle surfaces are sound, and shows where they are not.", kFooter};
 }
 
 void declareCheckOptions(CLI::App& app, CheckOptions& options) {

@@ -262,7 +262,7 @@ def load(path: Any, *, volume: Any = None, input_coordinates: Optional[str] = No
     volume : path, nibabel image or Image, optional
         The image that tkRAS and voxel indices refer to.
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, optional
-        The frame of the file's points, whatever the file says of it. Default: as the file says.
+        The frame of the file's points, overriding the file's own. Default: as the file says.
 
     Raises
     ------

@@ -148,7 +148,7 @@ def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = Non
     max_pairs : int
         Pairs of crossing triangles to list; all are counted.
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, optional
-        The frame of a file's points, whatever the file says of it.
+        The frame of a file's points, overriding the file's own.
     threads : int
         0: as many as the machine has.
 
@@ -190,7 +190,7 @@ def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str =
     names : sequence of str, optional
         Their names in findings; default the dict's keys, the files' names, or "surface 1" and so on.
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, or a sequence of one for each, optional
-        The frame of a file's points, whatever the file says of it (None: as it says).
+        The frame of a file's points, overriding the file's own (None: as it says).
 
     Returns
     -------
@@ -243,7 +243,7 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True,
     symmetric : bool
         From b to a too.
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, or two, optional
-        The frame of a file's points, whatever the file says of it (None: as it says).
+        The frame of a file's points, overriding the file's own (None: as it says).
     threads : int
         0: as many as the machine has.
     progress : callable, optional

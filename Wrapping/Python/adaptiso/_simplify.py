@@ -42,7 +42,7 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
     keep_borders : bool
         Vertices on open borders stay, bit by bit.
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, optional
-        The frame of a file's points, whatever the file says of it.
+        The frame of a file's points, overriding the file's own.
     threads, progress
         As for `surface`.
 

@@ -123,7 +123,7 @@ private:
 /// frame that it says, else as stored.
 /// \param image        that tkRAS and voxel indices refer to, or none
 /// \param keepsFaults  points as stored, with all that is wrong
-/// \param stated       the frame, whatever the file says of it; or none
+/// \param stated       the frame, overriding the file's own; or none
 /// \return the mesh, and a warning (empty: none)
 /// \throws FileError, InvalidInput  voxel indices without an image; an image and no frame
 std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(

@@ -94,7 +94,7 @@ struct MeshReadOptions {
     /// not finite, are then left out.
     bool keepsFaults = false;
     bool keepsPointArrays = false;  ///< else they are passed over
-    /// The frame of the points, whatever the file says of it; empty: as the file says.
+    /// The frame of the points, overriding the file's own; empty: as the file says.
     std::optional<CoordinateFrame> inputCoordinates{};
     /// Where the data of a GIFTI file may lie that are in a file of their own; readMesh() takes the
     /// surface's folder. Empty: such files are refused.
