@@ -91,6 +91,7 @@ std::vector<Picture> ProgramRun::writePage(const std::function<Report()>& make) 
 std::string ProgramRun::json(const std::string& schema, const Json& own) const {
     Json report = reportHead(schema, program_, verdict, warnings);
     report.update(own);
+    report["options"]["picture"] = pictureJson(report_.view);
     report["failedByWarnings"] = failsStrict();
     report["reportFailure"] = reportFailureJson(verdict.reportFailure);
     report["seconds"] = secondsJson(timer);

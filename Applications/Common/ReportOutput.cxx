@@ -1,9 +1,14 @@
 #include "Common/ReportOutput.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "Common/AtomicOutput.h"
 #include "Common/OptionValues.h"
@@ -30,6 +35,11 @@ std::vector<Picture> writePictures(Report report, const std::string& program,
         for (const Picture& picture : pictures) {
             outputs.emplace_back(options.pictures / picture.name).writeText(picture.png);
         }
+        if (options.view) {
+            for (const Picture& picture : drawViews(report, *options.view)) {
+                outputs.emplace_back(options.pictures / picture.name).writeText(picture.png);
+            }
+        }
     }
     if (!options.page.empty()) {
         outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));
@@ -38,6 +48,7 @@ std::vector<Picture> writePictures(Report report, const std::string& program,
 }
 
 constexpr double kNear = 0.06;
+constexpr int kLeastPixels = 16, kMostPixels = 8192;
 
 /// So near that distances between such points do not overflow.
 bool isMeasurable(const Vec3& p) {
@@ -53,7 +64,139 @@ double diagonalOf(const TriangleMesh& mesh) {
     return norm(box.size());
 }
 
+constexpr std::array<std::pair<const char*, std::array<double, 2>>, 6> kSides{
+    {{"front", {0, 0}},
+     {"back", {180, 0}},
+     {"left", {90, 0}},
+     {"right", {-90, 0}},
+     {"top", {180, 90}},
+     {"bottom", {0, -90}}}};
+
+/// The two parts of "105,18" or "2400x1800"; empty unless there are two.
+std::array<std::string, 2> halves(const std::string& text, char between) {
+    const std::size_t at = text.find(between);
+    if (at == std::string::npos) return {};
+    return {text.substr(0, at), text.substr(at + 1)};
+}
+
+void parseView(const std::string& text, ViewOptions& view) {
+    for (const auto& [word, angles] : kSides) {
+        if (text != word) continue;
+        view.azimuthDeg = angles[0];
+        view.elevationDeg = angles[1];
+        return;
+    }
+    const auto [first, second] = halves(text, ',');
+    const auto azimuth = parseFiniteNumber(first), elevation = parseFiniteNumber(second);
+    if (!azimuth || !elevation || std::abs(*azimuth) > 360 || std::abs(*elevation) > 90) {
+        refuseValue("--picture-view", text,
+                    "front, back, left, right, top, bottom, or two angles in degrees, as 105,18 "
+                    "(-360 to 360, -90 to 90)");
+    }
+    view.azimuthDeg = *azimuth;
+    view.elevationDeg = *elevation;
+}
+
+void parseSize(const std::string& text, ViewOptions& view) {
+    const auto [width, height] = halves(text, 'x');
+    const auto side = [&](const std::string& digits) {
+        int value = 0;
+        const auto [end, error] =
+            std::from_chars(digits.data(), digits.data() + digits.size(), value);
+        if (error != std::errc{} || end != digits.data() + digits.size() || value < kLeastPixels ||
+            value > kMostPixels) {
+            refuseValue("--picture-size", text,
+                        "width and height in pixels, as 2400x1800, each from 16 to 8192");
+        }
+        return value;
+    };
+    view.width = side(width);
+    view.height = side(height);
+}
+
+/// "#d9c7a0", also without the #, which a shell may take for a comment's.
+ReportColor parseColor(const std::string& option, const std::string& text,
+                       const std::string& otherwise = "") {
+    if (text == "white") return {255, 255, 255};
+    if (text == "black") return {0, 0, 0};
+    const std::string digits = text.starts_with('#') ? text.substr(1) : text;
+    unsigned value = 0;
+    const auto [end, error] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+    if (digits.size() != 6 || error != std::errc{} || end != digits.data() + digits.size()) {
+        refuseValue(option, text, "a colour as '#d9c7a0', white" + otherwise + " or black");
+    }
+    return {static_cast<std::uint8_t>(value >> 16), static_cast<std::uint8_t>(value >> 8),
+            static_cast<std::uint8_t>(value)};
+}
+
+std::string colorWord(ReportColor color) {
+    char text[8];
+    std::snprintf(text, sizeof text, "#%02x%02x%02x", color[0], color[1], color[2]);
+    return text;
+}
+
+const std::vector<std::pair<std::string, Shading>> kShadings{
+    {"smooth", Shading::Smooth}, {"flat", Shading::Flat}, {"edges", Shading::Edges}};
+
+void declareViewOptions(CLI::App& app, const OptionGroup& group,
+                        std::optional<ViewOptions>& options) {
+    const auto declare = [&](const std::string& name, const std::string& valueName,
+                             const std::function<void(const std::string&, ViewOptions&)>& take,
+                             const std::string& help) {
+        group
+            .value(
+                name, valueName,
+                [&options, take](const std::string& text) {
+                    if (!options) options.emplace();
+                    take(text, *options);
+                },
+                help)
+            ->needs(app.get_option("--pictures"));
+    };
+    declare("--picture-view", "SIDE|AZ,EL", parseView,
+            "Draw view-1.png too, each surface alone, for a paper: from the front, back, left, "
+            "right, top or bottom, or from AZ degrees round from the front to the patient's left "
+            "and EL above (default with the next four: front)");
+    declare("--picture-size", "WxH", parseSize,
+            "Size of view-1.png in pixels (default: 2400x1800)");
+    declare(
+        "--picture-color", "COLOR",
+        [](const std::string& text, ViewOptions& view) {
+            view.color = parseColor("--picture-color", text);
+        },
+        "Colour of the surfaces there, as '#d9c7a0' (default: ivory, or as the report has them)");
+    declare(
+        "--picture-background", "COLOR|transparent",
+        [](const std::string& text, ViewOptions& view) {
+            view.background.reset();
+            if (text == "transparent") return;
+            view.background = parseColor("--picture-background", text, ", transparent");
+        },
+        "Background there (default: white)");
+    declare(
+        "--picture-shading", "smooth|flat|edges",
+        [](const std::string& text, ViewOptions& view) {
+            std::vector<std::string> words;
+            for (const auto& [word, shading] : kShadings) words.push_back(word);
+            view.shading = kShadings[parseChoice("--picture-shading", text, words)].second;
+        },
+        "Shading there: smooth by the vertices' normals (default), flat by triangles, or flat "
+        "with their edges");
+}
+
 }  // namespace
+
+Json pictureJson(const std::optional<ViewOptions>& view) {
+    if (!view) return nullptr;
+    const auto shading =
+        std::ranges::find(kShadings, view->shading, &std::pair<std::string, Shading>::second);
+    return {{"viewDeg", {view->azimuthDeg, view->elevationDeg}},
+            {"sizePixels", {view->width, view->height}},
+            {"color", view->color ? Json(colorWord(*view->color)) : Json(nullptr)},
+            {"background", view->background ? colorWord(*view->background) : "transparent"},
+            {"shading", shading->first}};
+}
 
 void declareReportOptions(CLI::App& app, ReportOptions& options, const std::string& heading) {
     const OptionGroup group(app, heading);
@@ -62,6 +205,7 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, const std::stri
                "HTML file that needs no network");
     group.text("--pictures", "DIR", options.pictures,
                "Write the report's pictures alone, as PNG files, into the folder DIR");
+    declareViewOptions(app, group, options.view);
     group.flag(
         "--deface-report", options.leavesOutFaces,
         "Leave the face out of the page and the pictures: what lies in front of and below the "

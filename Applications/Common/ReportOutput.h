@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "Common/AtomicOutput.h"
 #include "Common/CommonOptions.h"
+#include "Common/Json.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "adaptiso/Core/TriangleMesh.h"
@@ -23,14 +25,18 @@ namespace adaptiso {
 
 /// Options of every program that writes a report page.
 struct ReportOptions {
-    std::filesystem::path page;      ///< an HTML file; empty: none
-    std::filesystem::path pictures;  ///< a folder of PNG files; empty: none
+    std::filesystem::path page;       ///< an HTML file; empty: none
+    std::filesystem::path pictures;   ///< a folder of PNG files; empty: none
+    std::optional<ViewOptions> view;  ///< pictures of this kind too; in the same folder
     bool leavesOutFaces = false;
 
     bool isWanted() const { return !page.empty() || !pictures.empty(); }
 };
 
-/// Adds --report, --pictures and --deface-report.
+/// `options.picture` of a report of --json; null unless one is asked for.
+Json pictureJson(const std::optional<ViewOptions>& view);
+
+/// Adds --report, --pictures, --picture-view and its like, and --deface-report.
 void declareReportOptions(CLI::App& app, ReportOptions& options, const std::string& heading);
 
 /// Checks these outputs before an input is read.

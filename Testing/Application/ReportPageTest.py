@@ -11,6 +11,8 @@ import subprocess
 import unittest
 from pathlib import Path
 
+from PIL import Image
+
 import browser
 from support import (BAD_INPUT, BIN, CHECK_FAILED, MESH, OK, USAGE, ApplicationTest, ball, noise,
                      write_nifti)
@@ -193,6 +195,56 @@ class Files(ReportTest):
         for name in names:
             self.assertTrue((self.path("pictures") / name).read_bytes().startswith(PNG))
         self.assertFalse(self.path("page.html").exists())
+
+    def view(self, *arguments):
+        """(pixels, their box of what is drawn) of the one view of box.off, 10 x 20 x 30 mm."""
+        corners = [(x, y, z) for z in (0, 30) for y in (0, 20) for x in (0, 10)]
+        sides = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+        write_off(self.path("box.off"), (corners, [t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))]))
+        self.check("box.off", "--pictures", "pictures", "--picture-size", "300x200", "--picture-background",
+                   "transparent", "--json", "box.json", "--quiet", *arguments)
+        with Image.open(self.path("pictures/view-1.png")) as image:
+            self.assertEqual((image.size, image.mode), ((300, 200), "RGBA"))
+            return image.load(), image.getbbox()
+
+    def test_a_view_shows_its_side_as_large_as_it_can(self):
+        # 94 % of 200 pixels are 188; the other side follows from the box's
+        for side, width, height in (("front", 188 / 3, 188), ("left", 188 * 2 / 3, 188), ("top", 94, 188),
+                                    ("90,0", 188 * 2 / 3, 188), ("0,-90", 94, 188),
+                                    ("45,0", 188 * (10 + 20) / math.sqrt(2) / 30, 188)):
+            with self.subTest(side):
+                _, (left, top, right, bottom) = self.view("--picture-view", side)
+                self.assertAlmostEqual(right - left, width, delta=2)
+                self.assertAlmostEqual(bottom - top, height, delta=2)
+                self.assertAlmostEqual(left + right, 300, delta=2)
+                self.assertAlmostEqual(top + bottom, 200, delta=2)
+
+    def test_a_view_has_the_colour_and_shading_asked_for(self):
+        blue, _ = self.view("--picture-color", "2050ff", "--picture-shading", "flat")
+        self.assertEqual(blue[0, 0][3], 0)
+        red, green, most, opacity = blue[150, 100]
+        self.assertEqual(opacity, 255)
+        self.assertLess(red, green)
+        self.assertLess(green, most)
+        self.assertEqual({blue[x, y] for x in range(125, 175) for y in range(10, 190)}, {blue[150, 100]})
+        edges, _ = self.view("--picture-color", "2050ff", "--picture-shading", "edges")
+        dark = [(x, y) for x in range(125, 175) for y in range(10, 190) if edges[x, y] != blue[150, 100]]
+        self.assertGreater(len(dark), 40)  # the diagonal of the side
+        self.assertTrue(all(edges[at][2] < most for at in dark))
+        self.assertEqual(json.loads(self.path("box.json").read_text())["options"]["picture"],
+                         {"viewDeg": [0, 0], "sizePixels": [300, 200], "color": "#2050ff",
+                          "background": "transparent", "shading": "edges"})
+
+    def test_wrong_views_are_refused(self):
+        for option, value, rule in (("view", "up", "front, back"), ("view", "0,91", "angles"), ("view", "1,2,3", "angles"),
+                                    ("size", "300", "pixels"), ("size", "0x9", "16 to 8192"),
+                                    ("size", "9000x90", "16 to 8192"), ("color", "#12345", "colour"),
+                                    ("color", "+12345", "colour"), ("background", "red", "transparent"),
+                                    ("shading", "round", "smooth, flat or edges")):
+            done = self.check("sound.off", "--pictures", "pictures", f"--picture-{option}", value, code=USAGE)
+            self.assertIn(rule, done.stderr)
+        done = self.check("sound.off", "--picture-view", "left", code=USAGE)
+        self.assertIn("--picture-view needs --pictures", done.stderr)
 
     def test_broken_surfaces_get_pictures_too(self):
         self.path("broken.off").write_text(

@@ -21,19 +21,24 @@ cairo_status_t append(void* target, const unsigned char* bytes, unsigned int cou
     return CAIRO_STATUS_SUCCESS;
 }
 
-/// Paints `colorAt(n)`, n from 0 row by row.
-template <class ColorAt>
-void paint(cairo_t* context, int left, int top, int width, int height, const ColorAt& colorAt) {
+std::uint32_t packed(ReportColor c, std::uint8_t opacity = 0) {
+    return std::uint32_t{opacity} << 24 | std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 |
+           c[2];
+}
+
+/// Paints `packedAt(n)`, n from 0 row by row.
+template <class PackedAt>
+void paint(cairo_t* context, cairo_format_t format, int left, int top, int width, int height,
+           const PackedAt& packedAt) {
     const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface(
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height), cairo_surface_destroy);
+        cairo_image_surface_create(format, width, height), cairo_surface_destroy);
     require(cairo_surface_status(surface.get()));
     unsigned char* data = cairo_image_surface_get_data(surface.get());
     const int stride = cairo_image_surface_get_stride(surface.get());
     for (int y = 0; y < height; ++y) {
         auto* row = reinterpret_cast<std::uint32_t*>(data + std::ptrdiff_t{y} * stride);
         for (int x = 0; x < width; ++x) {
-            const ReportColor c = colorAt(static_cast<std::size_t>(y) * width + x);
-            row[x] = std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 | c[2];
+            row[x] = packedAt(static_cast<std::size_t>(y) * width + x);
         }
     }
     cairo_surface_mark_dirty(surface.get());
@@ -43,27 +48,35 @@ void paint(cairo_t* context, int left, int top, int width, int height, const Col
 
 }  // namespace
 
-Canvas::Canvas(int width, int height, ReportColor ground)
+Canvas::Canvas(int width, int height, std::optional<ReportColor> ground)
     : width_(width),
       height_(height),
-      surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height),
+      surface_(cairo_image_surface_create(ground ? CAIRO_FORMAT_RGB24 : CAIRO_FORMAT_ARGB32, width,
+                                          height),
                cairo_surface_destroy) {
     require(cairo_surface_status(surface_.get()));
     context_.reset(cairo_create(surface_.get()), cairo_destroy);
     require(cairo_status(context_.get()));
-    rectangle({0, 0}, width, height, ground);
+    if (ground) rectangle({0, 0}, width, height, *ground);
 }
 
 void Canvas::image(int left, int top, int width, int height,
                    const std::vector<std::uint8_t>& grey) {
-    paint(context_.get(), left, top, width, height, [&](std::size_t n) {
-        return ReportColor{grey[n], grey[n], grey[n]};
+    paint(context_.get(), CAIRO_FORMAT_RGB24, left, top, width, height, [&](std::size_t n) {
+        return packed({grey[n], grey[n], grey[n]});
     });
 }
 
 void Canvas::image(int left, int top, int width, int height,
                    const std::vector<ReportColor>& colors) {
-    paint(context_.get(), left, top, width, height, [&](std::size_t n) { return colors[n]; });
+    paint(context_.get(), CAIRO_FORMAT_RGB24, left, top, width, height,
+          [&](std::size_t n) { return packed(colors[n]); });
+}
+
+void Canvas::image(const std::vector<ReportColor>& colors,
+                   const std::vector<std::uint8_t>& opacity) {
+    paint(context_.get(), CAIRO_FORMAT_ARGB32, 0, 0, width_, height_,
+          [&](std::size_t n) { return packed(colors[n], opacity[n]); });
 }
 
 void Canvas::setColor(ReportColor color) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,8 +24,9 @@ enum class Anchor { Left, Middle, Right };
 /// A picture to draw on, in memory, by Cairo.
 class Canvas {
 public:
+    /// \param ground  empty: transparent
     /// \throws InternalError
-    Canvas(int width, int height, ReportColor ground);
+    Canvas(int width, int height, std::optional<ReportColor> ground);
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -32,6 +35,8 @@ public:
     void image(int left, int top, int width, int height, const std::vector<std::uint8_t>& grey);
     /// The same in colour.
     void image(int left, int top, int width, int height, const std::vector<ReportColor>& colors);
+    /// The same over the whole picture. \param colors  already multiplied by `opacity` / 255
+    void image(const std::vector<ReportColor>& colors, const std::vector<std::uint8_t>& opacity);
 
     void segments(const std::vector<std::pair<Pixel, Pixel>>& lines, ReportColor color,
                   double lineWidth);

@@ -76,13 +76,23 @@ std::string reportDate() {
     return text;
 }
 
+namespace {
+
+constexpr ReportColor kPlain{226, 205, 190};
+
+bool isDrawn(const Scene& scene) {
+    return !scene.isEmpty() && (!scene.face || scene.hasTriangles());
+}
+
+}  // namespace
+
 std::vector<Picture> drawPictures(const Report& report) {
     std::vector<Picture> pictures;
     const auto add = [&](std::optional<Picture> picture) {
         if (picture) pictures.push_back(std::move(*picture));
     };
     const Scene scene = makeScene(report);
-    if (!scene.isEmpty() && (!scene.face || scene.hasTriangles())) {
+    if (isDrawn(scene)) {
         add(spotPicture(report, scene));
         for (const int axis : {2, 1, 0}) add(contourPicture(report, scene, axis));
         if (report.areRegions) {
@@ -90,6 +100,20 @@ std::vector<Picture> drawPictures(const Report& report) {
         } else {
             for (std::size_t n = 0; n < scene.surfaces.size(); ++n) add(sixSidesPicture(scene, n));
         }
+    }
+    return pictures;
+}
+
+std::vector<Picture> drawViews(const Report& report, const ViewOptions& options) {
+    const Scene scene = makeScene(report);
+    std::vector<Picture> pictures;
+    if (!isDrawn(scene)) return pictures;
+    if (report.areRegions) return {viewPicture(scene.surfaces, "view-1.png", options)};
+    for (const SceneSurface& surface : scene.surfaces) {
+        const std::string name = "view-" + std::to_string(pictures.size() + 1) + ".png";
+        SceneSurface alone = surface;
+        if (!report.surfaces[pictures.size()].color) alone.color = kPlain;
+        pictures.push_back(viewPicture({alone}, name, options));
     }
     return pictures;
 }

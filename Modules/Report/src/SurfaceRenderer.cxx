@@ -4,16 +4,19 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/PortableMath.h"
 
 namespace adaptiso {
 
 namespace {
 
 constexpr ReportColor kBack{214, 69, 65};
-constexpr int kFiner = 2;  // pixels are drawn this much finer, then averaged
 constexpr double kFarBehind = -std::numeric_limits<double>::infinity();
 
 /// A corner as the view sees it: pixels, and mm towards the viewer.
@@ -23,33 +26,60 @@ struct Corner {
     double value;
 };
 
-/// The picture before it is averaged down.
+/// How surfaces are drawn.
+struct Style {
+    int finer = 2;  ///< pixels are drawn this much finer, then averaged
+    ReportColor ground = kWhite;
+    bool isFlat = false;               ///< each triangle by its own normal
+    std::optional<bool> drawsEdges{};  ///< default: where triangles are large enough
+    double halfEdge = 0.7;             ///< width of edges, finer pixels
+    bool isForPrint = false;           ///< softer light, a highlight, darker edges
+};
+
+/// Where a picture, or rows of it, lies.
+struct Frame {
+    Vec3 middle;  ///< of the whole picture
+    double mmPerPixel = 1;
+    int width = 0, height = 0;  ///< of the whole picture
+    int top = 0, rows = 0;      ///< drawn
+};
+
+/// Rows of a picture before they are averaged down.
 class Raster {
 public:
-    Raster(const BoundingBox& box, const View& view, int size)
+    Raster(const Frame& frame, const View& view, const Style& style)
         : view_(view),
+          style_(style),
           right_(view.right()),
-          size_(size * kFiner),
-          middle_(0.5 * (box.minimum + box.maximum)),
+          width_(frame.width * style.finer),
+          height_(frame.height * style.finer),
+          top_(frame.top * style.finer),
+          rows_(frame.rows * style.finer),
+          middle_(frame.middle),
           light_(normalized(0.9 * view.toViewer + 0.45 * view.up - 0.35 * right_)),
-          colors_(static_cast<std::size_t>(size_) * size_, kWhite),
-          depths_(colors_.size(), kFarBehind) {
-        const Vec3 extent = box.size();
-        mmPerPixel_ = 1.06 * std::max({extent.x, extent.y, extent.z, 1e-9}) / size_;
-    }
+          highlight_(normalized(light_ + view.toViewer)),
+          mmPerPixel_(frame.mmPerPixel / style.finer),
+          colors_(static_cast<std::size_t>(width_) * rows_, style.ground),
+          depths_(colors_.size(), kFarBehind) {}
 
     void draw(const SceneSurface& surface, const VertexNormals& normals) {
         surface_ = &surface;
         normals_ = &normals;
-        drawsEdges_ = meanTrianglePixels() > 60;
+        drawsEdges_ = style_.drawsEdges ? *style_.drawsEdges : meanTrianglePixels() > 60;
         surface.mesh.forEachTriangle(
             [&](const Triangle& t) { drawTriangle(corner(t[0]), corner(t[1]), corner(t[2])); });
     }
 
     Rendering finish() const {
-        Rendering result{size_ / kFiner, middle_, mmPerPixel_ * kFiner, {}, {}};
-        for (int y = 0; y < result.size; ++y) {
-            for (int x = 0; x < result.size; ++x) averagePixel(x, y, result);
+        Rendering result{width_ / style_.finer,
+                         rows_ / style_.finer,
+                         middle_,
+                         mmPerPixel_ * style_.finer,
+                         {},
+                         {},
+                         {}};
+        for (int y = 0; y < result.height; ++y) {
+            for (int x = 0; x < result.width; ++x) averagePixel(x, y, result);
         }
         return result;
     }
@@ -57,8 +87,8 @@ public:
 private:
     Corner corner(VertexId v) const {
         const Vec3 p = surface_->mesh.point(v) - middle_;
-        return {size_ / 2.0 + dot(p, right_) / mmPerPixel_,
-                size_ / 2.0 - dot(p, view_.up) / mmPerPixel_, dot(p, view_.toViewer),
+        return {width_ / 2.0 + dot(p, right_) / mmPerPixel_,
+                height_ / 2.0 - dot(p, view_.up) / mmPerPixel_ - top_, dot(p, view_.toViewer),
                 toVec3((*normals_)[v]), surface_->valuesMm.empty() ? 0 : surface_->valuesMm[v]};
     }
 
@@ -75,29 +105,39 @@ private:
         const auto first = [](double p, double q, double r) {
             return std::max(0, static_cast<int>(std::ceil(std::min({p, q, r}) - 0.5)));
         };
-        const auto last = [this](double p, double q, double r) {
-            return std::min(size_ - 1, static_cast<int>(std::floor(std::max({p, q, r}) - 0.5)));
+        const auto last = [](double p, double q, double r, int size) {
+            return std::min(size - 1, static_cast<int>(std::floor(std::max({p, q, r}) - 0.5)));
         };
         const double longest =
             std::max({std::hypot(b.x - a.x, b.y - a.y), std::hypot(c.x - b.x, c.y - b.y),
                       std::hypot(a.x - c.x, a.y - c.y)});
-        const double edgePart = std::abs(area) > 0 ? 0.7 * longest / std::abs(area) : 0;
-        for (int y = first(a.y, b.y, c.y); y <= last(a.y, b.y, c.y); ++y) {
-            for (int x = first(a.x, b.x, c.x); x <= last(a.x, b.x, c.x); ++x) {
+        const Vec3 flat = style_.isFlat ? flatNormal(a, b, c) : Vec3{};
+        const double edgePart = style_.halfEdge * longest / std::abs(area);
+        for (int y = first(a.y, b.y, c.y); y <= last(a.y, b.y, c.y, rows_); ++y) {
+            for (int x = first(a.x, b.x, c.x); x <= last(a.x, b.x, c.x, width_); ++x) {
                 const double px = x + 0.5, py = y + 0.5;
                 const double u = ((b.x - px) * (c.y - py) - (b.y - py) * (c.x - px)) / area;
                 const double v = ((c.x - px) * (a.y - py) - (c.y - py) * (a.x - px)) / area;
                 const double w = 1 - u - v;
                 if (u < 0 || v < 0 || w < 0) continue;
                 const double depth = u * a.depth + v * b.depth + w * c.depth;
-                const std::size_t n = static_cast<std::size_t>(y) * size_ + x;
+                const std::size_t n = static_cast<std::size_t>(y) * width_ + x;
                 if (!(depth > depths_[n])) continue;
                 depths_[n] = depth;
                 const bool isEdge = drawsEdges_ && std::min({u, v, w}) < edgePart;
-                colors_[n] = shade(u * a.normal + v * b.normal + w * c.normal,
-                                   u * a.value + v * b.value + w * c.value, isBack, isEdge);
+                colors_[n] =
+                    shade(style_.isFlat ? flat : u * a.normal + v * b.normal + w * c.normal,
+                          u * a.value + v * b.value + w * c.value, isBack, isEdge);
             }
         }
+    }
+
+    Vec3 flatNormal(const Corner& a, const Corner& b, const Corner& c) const {
+        const auto inSpace = [this](const Corner& p) {
+            return mmPerPixel_ * p.x * right_ - mmPerPixel_ * p.y * view_.up +
+                   p.depth * view_.toViewer;
+        };
+        return areaVector2(inSpace(a), inSpace(b), inSpace(c));
     }
 
     ReportColor shade(Vec3 normal, double value, bool isBack, bool isEdge) const {
@@ -106,41 +146,50 @@ private:
         ReportColor color = surface_->color;
         if (!surface_->valuesMm.empty()) color = viridis(value / surface_->largestValueMm);
         if (isBack) color = kBack;
-        const double light =
-            (0.45 + 0.55 * std::max(0.0, dot(normal, light_))) * (isEdge ? 0.72 : 1);
+        const double lit = std::max(0.0, dot(normal, light_));
+        double light = 0.45 + 0.55 * lit, shine = 0;
+        if (style_.isForPrint) {
+            light = 0.36 + 0.55 * lit + 0.09 * dot(normal, view_.toViewer);
+            shine = 16 * std::pow(std::max(0.0, dot(normal, highlight_)), 24);
+        }
+        if (isEdge) light *= style_.isForPrint ? 0.45 : 0.72;
         for (std::uint8_t& channel : color) {
-            channel = static_cast<std::uint8_t>(std::lround(channel * light));
+            channel =
+                static_cast<std::uint8_t>(std::lround(std::min(255.0, channel * light + shine)));
         }
         return color;
     }
 
     void averagePixel(int x, int y, Rendering& result) const {
         std::array<int, 3> sum{};
+        int covered = 0;
         double depth = kFarBehind;
-        for (int dy = 0; dy < kFiner; ++dy) {
-            for (int dx = 0; dx < kFiner; ++dx) {
+        const int finer = style_.finer, samples = finer * finer;
+        for (int dy = 0; dy < finer; ++dy) {
+            for (int dx = 0; dx < finer; ++dx) {
                 const std::size_t n =
-                    static_cast<std::size_t>(y * kFiner + dy) * size_ + x * kFiner + dx;
+                    static_cast<std::size_t>(y * finer + dy) * width_ + x * finer + dx;
                 for (std::size_t i = 0; i < 3; ++i) sum[i] += colors_[n][i];
                 depth = std::max(depth, depths_[n]);
+                covered += int{depths_[n] > kFarBehind};
             }
         }
-        ReportColor color;
-        constexpr int kSamples = kFiner * kFiner;
-        for (std::size_t i = 0; i < 3; ++i) {
-            color[i] = static_cast<std::uint8_t>((sum[i] + kSamples / 2) / kSamples);
-        }
-        result.colors.push_back(color);
+        const auto mean = [samples](int of) {
+            return static_cast<std::uint8_t>((of + samples / 2) / samples);
+        };
+        result.colors.push_back({mean(sum[0]), mean(sum[1]), mean(sum[2])});
+        result.opacity.push_back(mean(255 * covered));
         result.depthMm.push_back(depth);
     }
 
     const SceneSurface* surface_ = nullptr;  ///< that is drawn
     const VertexNormals* normals_ = nullptr;
     const View& view_;
+    const Style& style_;
     Vec3 right_;
-    int size_;
-    Vec3 middle_, light_;
-    double mmPerPixel_ = 1;
+    int width_, height_, top_, rows_;  ///< finer pixels
+    Vec3 middle_, light_, highlight_;
+    double mmPerPixel_;
     bool drawsEdges_ = false;
     std::vector<ReportColor> colors_;
     std::vector<double> depths_;
@@ -160,16 +209,16 @@ const std::array<View, 6>& sixViews() {
 
 Pixel Rendering::toPixel(const Vec3& p, const View& view) const {
     const Vec3 d = p - middle;
-    return {size / 2.0 + dot(d, view.right()) / mmPerPixel,
-            size / 2.0 - dot(d, view.up) / mmPerPixel};
+    return {width / 2.0 + dot(d, view.right()) / mmPerPixel,
+            height / 2.0 - dot(d, view.up) / mmPerPixel};
 }
 
 bool Rendering::isSeen(const Vec3& p, const View& view, double toleranceMm) const {
     const Pixel at = toPixel(p, view);
-    if (!(at.x >= 0 && at.y >= 0 && at.x < size && at.y < size)) return false;
+    if (!(at.x >= 0 && at.y >= 0 && at.x < width && at.y < height)) return false;
     const double depth = dot(p - middle, view.toViewer);
     const double seen =
-        depthMm[static_cast<std::size_t>(at.y) * size + static_cast<std::size_t>(at.x)];
+        depthMm[static_cast<std::size_t>(at.y) * width + static_cast<std::size_t>(at.x)];
     return std::abs(seen - depth) <= toleranceMm;
 }
 
@@ -189,7 +238,12 @@ VertexNormals vertexNormals(const SceneMesh& mesh) {
 
 Rendering render(std::span<const SceneSurface> surfaces, std::span<const VertexNormals> normals,
                  const BoundingBox& box, const View& view, int size) {
-    Raster raster(box, view, size);
+    const Vec3 extent = box.size();
+    const Style style;
+    const double mmPerPixel =
+        1.06 * std::max({extent.x, extent.y, extent.z, 1e-9}) / (size * style.finer) * style.finer;
+    Raster raster({0.5 * (box.minimum + box.maximum), mmPerPixel, size, size, 0, size}, view,
+                  style);
     for (std::size_t n = 0; n < surfaces.size(); ++n) raster.draw(surfaces[n], normals[n]);
     return raster.finish();
 }
@@ -294,6 +348,96 @@ Picture regionsPicture(const Scene& scene) {
             canvas.png(),
             canvas.width(),
             canvas.height()};
+}
+
+namespace {
+
+View viewFrom(double azimuthDeg, double elevationDeg) {
+    constexpr double kRadian = std::numbers::pi / 180;
+    const double sa = portable::sin(azimuthDeg * kRadian), ca = portable::cos(azimuthDeg * kRadian),
+                 se = portable::sin(elevationDeg * kRadian),
+                 ce = portable::cos(elevationDeg * kRadian);
+    return {"", {-sa * ce, ca * ce, se}, {sa * se, -ca * se, ce}, "", ""};
+}
+
+/// The frame that the surfaces fill but for a margin.
+Frame tightFrame(std::span<const SceneSurface> surfaces, const View& view, int width, int height) {
+    constexpr double kFilled = 0.94;
+    auto box = BoundingBox::empty();  // right, up, towards the viewer
+    for (const SceneSurface& surface : surfaces) {
+        surface.mesh.forEachTriangle([&](const Triangle& t) {
+            for (const VertexId v : t) {
+                const Vec3 p = surface.mesh.point(v);
+                box.add(Vec3{dot(p, view.right()), dot(p, view.up), dot(p, view.toViewer)});
+            }
+        });
+    }
+    if (box.isEmpty()) box = {{-1, -1, -1}, {1, 1, 1}};
+    const Vec3 middle = 0.5 * (box.minimum + box.maximum), extent = box.size();
+    return {middle.x * view.right() + middle.y * view.up + middle.z * view.toViewer,
+            std::max({extent.x / width, extent.y / height, 1e-12}) / kFilled, width, height};
+}
+
+/// The normals that the mesh has, else those of vertexNormals().
+VertexNormals normalsToShow(const SceneMesh& mesh) {
+    const std::vector<Normal>& own = mesh.lps().normals;
+    if (std::ssize(own) != mesh.pointCount()) return vertexNormals(mesh);
+    VertexNormals normals(own.size());
+    std::transform(own.begin(), own.end(), normals.begin(), [](const Normal& n) {
+        return Normal{-n.x, -n.y, n.z};
+    });
+    return normals;
+}
+
+}  // namespace
+
+Picture viewPicture(std::vector<SceneSurface> surfaces, const std::string& name,
+                    const ViewOptions& options) {
+    if (options.color) {
+        for (SceneSurface& surface : surfaces) {
+            surface.color = *options.color;
+            surface.valuesMm = {};
+        }
+    }
+    std::vector<VertexNormals> normals;
+    for (const SceneSurface& surface : surfaces) normals.push_back(normalsToShow(surface.mesh));
+    const View view = viewFrom(options.azimuthDeg, options.elevationDeg);
+    const Frame whole = tightFrame(surfaces, view, options.width, options.height);
+    Style style{.finer = 3,
+                .ground = options.background.value_or(kBlack),
+                .isFlat = options.shading != Shading::Smooth,
+                .drawsEdges = options.shading == Shading::Edges,
+                .isForPrint = true};
+    style.halfEdge = style.finer * std::max(options.width, options.height) / 4000.0;
+
+    constexpr int kFinerPixels = 4'000'000;  // at a time, by each thread
+    const int rows = std::max(1, kFinerPixels / (style.finer * style.finer * options.width));
+    std::vector<Rendering> bands((options.height + rows - 1) / rows);
+    parallelForPieces(std::ssize(bands), 1, [&](std::int64_t begin, std::int64_t) {
+        Frame band = whole;
+        band.top = static_cast<int>(begin) * rows;
+        band.rows = std::min(rows, options.height - band.top);
+        Raster raster(band, view, style);
+        for (std::size_t n = 0; n < surfaces.size(); ++n) raster.draw(surfaces[n], normals[n]);
+        bands[begin] = raster.finish();
+        bands[begin].depthMm = {};
+    });
+    std::vector<ReportColor> colors;
+    std::vector<std::uint8_t> opacity;
+    for (Rendering& band : bands) {
+        colors.insert(colors.end(), band.colors.begin(), band.colors.end());
+        opacity.insert(opacity.end(), band.opacity.begin(), band.opacity.end());
+        band = {};
+    }
+    Canvas canvas(options.width, options.height, options.background);
+    if (options.background) {
+        canvas.image(0, 0, options.width, options.height, colors);
+    } else {
+        canvas.image(colors, opacity);
+    }
+    const std::string what = surfaces.size() == 1 ? surfaces[0].name : "all surfaces";
+    return {name,         "View of " + what, "The surface of " + what + " from one side.",
+            canvas.png(), canvas.width(),    canvas.height()};
 }
 
 }  // namespace adaptiso

@@ -22,13 +22,14 @@ struct View {
 /// Front, back, left, right, top, bottom.
 const std::array<View, 6>& sixViews();
 
-/// Picture of a view, `size` pixels a side.
+/// Picture of a view, or rows of one.
 struct Rendering {
-    int size = 0;
+    int width = 0, height = 0;
     Vec3 middle;  ///< of the picture
     double mmPerPixel = 1;
     std::vector<ReportColor> colors;
-    std::vector<double> depthMm;  ///< of the nearest surface, towards the viewer; -inf: none
+    std::vector<std::uint8_t> opacity;  ///< 255 where surfaces cover the whole pixel
+    std::vector<double> depthMm;        ///< of the nearest surface, towards the viewer; -inf: none
 
     Pixel toPixel(const Vec3& p, const View& view) const;
     /// True if nothing lies more than `toleranceMm` before `p`, and something close behind it.
@@ -53,5 +54,9 @@ Picture sixSidesPicture(const Scene& scene, std::size_t n);
 
 /// All surfaces together, each in its colour, likewise.
 Picture regionsPicture(const Scene& scene);
+
+/// The surfaces in one picture, for drawViews().
+Picture viewPicture(std::vector<SceneSurface> surfaces, const std::string& name,
+                    const ViewOptions& options);
 
 }  // namespace adaptiso

@@ -4,11 +4,12 @@
 /// A build without Cairo: reports with pictures are refused before anything is drawn.
 namespace adaptiso {
 
-Canvas::Canvas(int width, int height, ReportColor) : width_(width), height_(height) {
+Canvas::Canvas(int width, int height, std::optional<ReportColor>) : width_(width), height_(height) {
     throw InvalidInput("this build draws no pictures for reports; use the programs");
 }
 void Canvas::image(int, int, int, int, const std::vector<std::uint8_t>&) {}
 void Canvas::image(int, int, int, int, const std::vector<ReportColor>&) {}
+void Canvas::image(const std::vector<ReportColor>&, const std::vector<std::uint8_t>&) {}
 void Canvas::segments(const std::vector<std::pair<Pixel, Pixel>>&, ReportColor, double) {}
 void Canvas::ring(Pixel, double, ReportColor, double) {}
 void Canvas::rectangle(Pixel, double, double, ReportColor) {}

@@ -75,6 +75,30 @@ TEST(Pictures, AreTheSameForAnyNumberOfThreads) {
     for (std::size_t n = 0; n < many.size(); ++n) EXPECT_EQ(many[n].png, alone[n].png);
 }
 
+TEST(Views, AreTheSameForAnyNumberOfThreads) {
+    const Example example;
+    const ViewOptions options{.azimuthDeg = 30, .elevationDeg = 20, .width = 900, .height = 900};
+    const std::vector<Picture> many = drawViews(example.report, options);
+    const ThreadLimitGuard one(1);
+    const std::vector<Picture> alone = drawViews(example.report, options);
+    ASSERT_EQ(namesOf(many), (std::set<std::string>{"view-1.png", "view-2.png"}));
+    ASSERT_EQ(many.size(), alone.size());
+    for (std::size_t n = 0; n < many.size(); ++n) EXPECT_EQ(many[n].png, alone[n].png);
+}
+
+TEST(Views, ShowRegionsTogetherAndBrokenSurfacesAsFarAsTheyGo) {
+    Example example;
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    example.report.surfaces.push_back({"broken", {{{kNan, 0, 0}, {1, 0, 0}}, {{0, 1, 7}}, {}}});
+    EXPECT_EQ(drawViews(example.report, {.width = 40, .height = 30}).size(), 3U);
+    example.report.areRegions = true;
+    const std::vector<Picture> together = drawViews(example.report, {.width = 40, .height = 30});
+    ASSERT_EQ(namesOf(together), std::set<std::string>{"view-1.png"});
+    EXPECT_EQ(number(together[0].png, 16), 40);
+    EXPECT_EQ(number(together[0].png, 20), 30);
+    EXPECT_TRUE(drawViews(Report{}, {}).empty());
+}
+
 TEST(Pictures, AnythingBrokenIsDrawnAsFarAsItGoes) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     Report report;

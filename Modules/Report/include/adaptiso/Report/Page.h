@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,27 @@ struct Picture {
 /// left out. The same report gives the same bytes, whatever the number of threads.
 /// \pre spots are finite  \throws InternalError  Cairo refuses
 std::vector<Picture> drawPictures(const Report& report);
+
+enum class Shading {
+    Smooth,  ///< by the vertices' normals, which are the image's gradient where the mesh has them
+    Flat,    ///< each triangle by its own normal
+    Edges    ///< flat, with the edges of the triangles
+};
+
+/// How drawViews() draws.
+struct ViewOptions {
+    /// Where the viewer stands, in degrees: 0 in front, 90 on the patient's left, 180 behind.
+    double azimuthDeg = 0;
+    double elevationDeg = 0;             ///< from -90 (below) to 90 (above)
+    int width = 2400, height = 1800;     ///< pixels
+    std::optional<ReportColor> color{};  ///< default: that of surfaces or values, else ivory
+    std::optional<ReportColor> background = ReportColor{255, 255, 255};  ///< empty: transparent
+    Shading shading = Shading::Smooth;
+};
+
+/// Each surface by itself (regions: all together) from one side and without words, as large as the
+/// picture allows: "view-1.png", ... There is no perspective. As drawPictures() otherwise.
+std::vector<Picture> drawViews(const Report& report, const ViewOptions& options);
 
 struct PageOptions {
     /// Samples and triangles that the viewer gets at most; beyond, the image is averaged down and
