@@ -50,6 +50,15 @@ std::string inputStem(const fs::path& input) {
     return name;
 }
 
+std::string shellQuoted(const std::string& text) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+,:@%";
+    if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+    return word + "'";
+}
+
 std::string bidsLabel(std::string_view number) {
     std::string label;
     for (const char c : number) {

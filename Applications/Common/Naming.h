@@ -13,6 +13,9 @@ namespace adaptiso {
 /// The last part of a path, never a folder above it; the folder's own name for ".".
 std::string baseName(const std::filesystem::path& path);
 
+/// `text` as a shell takes it for one word.
+std::string shellQuoted(const std::string& text);
+
 /// `text` with `by` wherever `place` stood. \pre place is not empty
 std::string replaced(std::string text, std::string_view place, std::string_view by);
 

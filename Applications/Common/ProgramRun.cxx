@@ -4,8 +4,10 @@
 #include <iterator>
 #include <system_error>
 
+#include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace fs = std::filesystem;
@@ -104,6 +106,36 @@ void ProgramRun::settleVerdict() {
     verdict.failReport(pageFailure_);
 }
 
+/// "Wrote brain.ply, page.html; next: adaptiso-check brain.ply"
+void ProgramRun::printEnd(std::ostream& out, const AtomicFolder* folder) const {
+    std::vector<std::string> written, toDo;
+    if (folder != nullptr) written.push_back(folder->target().string() + "/");
+    bool hasPage = false;
+    for (const AtomicOutput& output : outputs_) {
+        const fs::path& target = output.target();
+        const bool isPicture =
+            !report_.pictures.empty() && target.parent_path() == report_.pictures;
+        const std::string name = isPicture ? report_.pictures.string() + "/" : target.string();
+        if (written.empty() || written.back() != name) written.push_back(name);
+        hasPage = hasPage || target == report_.page;
+    }
+    if (!next.empty()) toDo.push_back(next);
+    if (hasPage) toDo.push_back("open " + shellQuoted(report_.page.string()) + " in a browser");
+    if (written.empty() && toDo.empty()) return;
+    constexpr std::size_t kMostNames = 4;
+    const auto joined = [](const std::vector<std::string>& texts, const std::string& between) {
+        std::string text;
+        for (const std::string& each : texts) text += (text.empty() ? "" : between) + each;
+        return text;
+    };
+    const std::size_t more = written.size() > kMostNames ? written.size() - kMostNames : 0;
+    written.resize(written.size() - more);
+    std::string line = written.empty() ? "" : "Wrote " + joined(written, ", ");
+    if (more > 0) line += " and " + std::to_string(more) + " more";
+    if (!toDo.empty()) line += (line.empty() ? "Next: " : "; next: ") + joined(toDo, "; ");
+    out << oneLine(line) << '\n';
+}
+
 void ProgramRun::deliver(const std::function<std::string()>& makeJson,
                          const std::function<void(std::ostream&)>& printText,
                          AtomicFolder* folder) {
@@ -111,7 +143,10 @@ void ProgramRun::deliver(const std::function<std::string()>& makeJson,
     const std::string json = common_.wantsJson() ? makeJson() : "";
     if (hasJsonFile(common_)) addOutput(common_.json).writeText(json);
     printNewWarnings();
-    printResults(common_, json, printText);
+    printResults(common_, json, [&](std::ostream& out) {
+        printText(out);
+        printEnd(out, folder);
+    });
     if (folder != nullptr) {
         folder->commit(outputs_);
     } else {

@@ -57,6 +57,7 @@ public:
     StageTimer timer;
     std::vector<Warning> warnings;  ///< each names its file
     Verdict verdict;                ///< final once deliver() makes the reports
+    std::string next;  ///< command or viewer to go on with, for the last line of text; may be empty
 
     /// Runs `work` as a stage: shown as progress, timed under its name. Returns its result.
     template <class Work>
@@ -86,7 +87,8 @@ public:
     /// Adds --strict and a failed page to the verdict. An error of the run itself stays first.
     void settleVerdict();
 
-    /// Settles the verdict, prints warnings and results, then renames all outputs, and `folder`
+    /// Settles the verdict, prints warnings, results and a line of what was written and what to do
+    /// next, then renames all outputs, and `folder`
     /// with them, or none.
     /// \param makeJson   called for --json
     /// \param printText  called unless --quiet or --json -
@@ -99,6 +101,8 @@ public:
     int end(const std::string& written) const { return printVerdict(program_, verdict, written); }
 
 private:
+    void printEnd(std::ostream& out, const AtomicFolder* folder) const;
+
     const std::string program_;
     const CommonOptions& common_;
     const ReportOptions& report_;

@@ -211,6 +211,16 @@ void writePage(BemRun& run, std::optional<AtomicFolder>& folder) {
     }
 }
 
+/// "adaptiso-check --nested model/inner_skull.surf model/outer_skull.surf ..."
+std::string nestedCommand(const AtomicFolder& folder) {
+    std::string surfaces;
+    for (const auto& [name, bytes] : folder.files()) {
+        if (name.ends_with(".surf"))
+            surfaces += " " + shellQuoted((folder.target() / name).string());
+    }
+    return surfaces.empty() ? "" : "adaptiso-check --nested" + surfaces + " --report check.html";
+}
+
 /// Writes the folder (only the report and a picture if there is no model) and all other outputs,
 /// and prints the results, or does none of these.
 void write(BemRun& run) {
@@ -227,6 +237,7 @@ void write(BemRun& run) {
     writePage(run, folder);
     run.settleVerdict();
     const std::string json = jsonReport(run);
+    if (folder && run.model.hasModel()) run.next = nestedCommand(*folder);
     if (folder) folder->writeText("report.json", json);
     run.deliver([&] { return json; }, [&](std::ostream& out) { printReport(out, run); },
                 folder ? &*folder : nullptr);

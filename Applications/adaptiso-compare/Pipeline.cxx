@@ -11,6 +11,7 @@
 #include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
+#include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "Run.h"
 #include "adaptiso/Core/Memory.h"
@@ -198,6 +199,9 @@ int runCompare(const CompareOptions& options) {
     }
     const bool havePassed = std::ranges::all_of(run.checks, std::mem_fn(&Check::hasPassed));
     run.verdict.exitCode = havePassed ? kExitOk : kExitCheckFailed;
+    if (!options.colored.empty()) {
+        run.next = "open " + shellQuoted(options.colored.string()) + " in ParaView";
+    }
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
     printFailed(run);
     return run.end(options.colored.empty() ? "the distances are measured"

@@ -256,6 +256,10 @@ int runLabels(const LabelsOptions& given) {
                                              "was written: " +
                                              failureText(run)};
     }
+    if (std::ranges::find(run.files, "all.vtm", [](const auto& file) { return file.first; }) !=
+        run.files.end()) {
+        run.next = "open " + shellQuoted((run.folder / "all.vtm").string()) + " in ParaView";
+    }
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); },
                 folder ? &*folder : nullptr);
     return run.end(run.writesFolder() ? run.folder.string() + " is written"

@@ -264,25 +264,15 @@ void printValues(std::ostream& out, const ValueSummary& values, bool isInteger) 
     if (values.histogram) printHistogram(out, *values.histogram, isInteger);
 }
 
-/// `path` as a shell takes it.
-std::string quoted(const std::string& path) {
-    constexpr std::string_view kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+,:@%";
-    if (path.find_first_not_of(kPlain) == std::string::npos) return path;
-    std::string text = "'";
-    for (const char c : path) text += c == '\'' ? "'\\''" : std::string(1, c);
-    return text + "'";
-}
-
 /// Commands to go on with: the options given, and isovalues to try.
 void printNext(std::ostream& out, const MeshOptions& options, const ImageInfo& info) {
     if (!info.refusals.empty() || info.values.otsu.size() < 2) return;
     std::string command = "adaptiso-mesh";
     for (const std::string& option : options.batch.runOptions) {
-        if (option != "--info" && option != "--show-phi") command += " " + quoted(option);
+        if (option != "--info" && option != "--show-phi") command += " " + shellQuoted(option);
     }
     const std::string input = baseName(options.input);
-    const std::string end = (input.starts_with('-') ? " -- " : " ") + quoted(input) + "\n";
+    const std::string end = (input.starts_with('-') ? " -- " : " ") + shellQuoted(input) + "\n";
     out << "next        " << oneLine(command + " --iso auto --largest --fill-cavities" + end)
         << "\n            " << oneLine(command);
     for (const double threshold : info.values.otsu[1]) out << " --iso " << formatShort(threshold);

@@ -265,6 +265,17 @@ void warnOfSurfaces(MeshRun& run) {
     run.printNewWarnings();
 }
 
+/// "adaptiso-check brain.ply"
+std::string checkCommand(const MeshRun& run) {
+    std::string command = "adaptiso-check";
+    bool needsImage = false;
+    for (const SurfaceSummary& surface : run.surfaces) {
+        command += " " + shellQuoted(surface.file.string());
+        needsImage = needsImage || surface.frame == CoordinateFrame::Voxel;
+    }
+    return needsImage ? command + " --volume " + shellQuoted(run.options.input.string()) : command;
+}
+
 /// "brain-100.ply and brain-120.ply are written"
 std::string writtenText(const MeshRun& run) {
     std::string text;
@@ -327,6 +338,7 @@ int runMesh(const MeshOptions& options) {
     warnOfSurfaces(run);
     if (run.failsStrict()) run.dropOutputs();
     if (options.report.isWanted()) run.writePage([&] { return makeReport(run, volume); });
+    if (!run.failsStrict()) run.next = checkCommand(run);
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
     return run.end(run.failsStrict() ? "no surface is written" : writtenText(run));
 }

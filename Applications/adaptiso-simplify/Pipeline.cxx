@@ -328,6 +328,9 @@ int runSimplify(const SimplifyCommand& command) {
         run.writePage([&] { return makeReport(run, input, std::move(shown)); });
     }
     if (run.failsSoundness()) run.verdict = {kExitCheckFailed, refusal(run)};
+    if (run.writesSurface()) {
+        run.next = "adaptiso-check " + shellQuoted(run.output.file.string());
+    }
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
     return run.end(run.writesSurface() ? run.output.file.string() + " is written"
                                        : "no surface is written");
