@@ -155,9 +155,25 @@ private:
         run_.stage("check", [&] {
             surface.facts = measureSurface(
                 loaded.mesh.file.mesh, sizeLimitsOf(options_.profileInUse()), options_.maxPairs);
-            surface.checks = judgeSurface(surface.facts, options_);
         });
+        if (options_.measuresWalls) {
+            run_.stage("walls", [&] {
+                measureWallsOf(loaded.mesh.file.mesh, options_.wallLimitMm(), surface.facts);
+            });
+        }
+        surface.checks = judgeSurface(surface.facts, options_);
+        warnOfWalls(surface);
         meshes_.push_back(std::move(loaded));
+    }
+
+    void warnOfWalls(const SurfaceRun& surface) {
+        const std::optional<WallReport>& walls = surface.facts.walls;
+        if (!walls || !walls->hasWall() || walls->leastMm >= options_.wallLimitMm()) return;
+        run_.warnings.push_back(
+            {"thin-walls",
+             "walls below " + formatMeasure(walls->thinAreaMm2) + " mm2 are thinner than " +
+                 formatNumber(options_.wallLimitMm()) + " mm; a printer may leave holes there",
+             baseName(surface.file)});
     }
 
     void readSurface(NamedMesh& mesh, SurfaceRun& surface) {
@@ -367,6 +383,9 @@ int runCheck(const CheckOptions& options) {
         run.writePage([&] { return makeReport(run, checker.shown()); });
     }
     run.verdict = verdictOf(run);
+    if (!run.hasPassed() && options.report.page.empty()) {
+        run.next = "--report check.html shows where";
+    }
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
     if (options.common.isQuiet || options.common.wantsJsonOnStdout()) printFailed(run);
     if (run.hasUnreadable()) run.verdict.error.clear();  // printed above

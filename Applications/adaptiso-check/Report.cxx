@@ -83,6 +83,7 @@ Json optionsJson(const CheckOptions& options) {
             {"minGapMm", options.minGapMm.value_or(CheckOptions::kDefaultMinGapMm)},
             {"minAngleDeg", options.minAngleDeg.value_or(CheckOptions::kDefaultMinAngleDeg)},
             {"maxOffMm", orNull(options.maxOffMm)},
+            {"minWallMm", options.measuresWalls ? Json(options.wallLimitMm()) : Json(nullptr)},
             {"maxPairs", options.maxPairs},
             {"threads", orNull(options.common.threads)},
             {"strict", options.common.isStrict}};
@@ -152,6 +153,20 @@ void printFacts(std::ostream& out, const SurfaceFacts& facts) {
     printSpread(out, "edge, mm", facts.shape.edgeMm, 3);
 }
 
+/// "144.0 x 180.2 x 152.1 mm, 1 shell, 2 handles, thinnest wall 0.42 mm"
+std::string printText(const SurfaceFacts& facts) {
+    const auto counted = [](std::int64_t count, const std::string& what) {
+        return formatCount(count) + what + (count == 1 ? "" : "s");
+    };
+    const Vec3& size = facts.size.extentMm;
+    std::string text = formatFixed(size.x, 1) + " x " + formatFixed(size.y, 1) + " x " +
+                       formatFixed(size.z, 1) + " mm, " +
+                       counted(std::ssize(facts.topology.components), " shell");
+    if (const auto genus = facts.topology.genus()) text += ", " + counted(*genus, " handle");
+    if (!facts.walls || !facts.walls->hasWall()) return text;
+    return text + ", thinnest wall " + wallText(*facts.walls);
+}
+
 void printSurface(std::ostream& out, const SurfaceRun& surface, const CheckRun& run) {
     out << surface.file.string() << ": ";
     if (!surface.error.empty()) {
@@ -163,6 +178,7 @@ void printSurface(std::ostream& out, const SurfaceRun& surface, const CheckRun& 
         << formatCount(surface.facts.topology.vertices) << " vertices\n";
     printChecks(out, surface.checks);
     printFacts(out, surface.facts);
+    if (run.options.measuresWalls) out << "  to print: " << printText(surface.facts) << '\n';
     printVerdict(out, surface.checks, run);
 }
 
@@ -273,6 +289,7 @@ ReportTable surfaceTable(const CheckRun& run) {
                       {"Surface", "Triangles", "Vertices", "Pieces", "Genus", "Area, mm²",
                        "Volume, mm³", "Smallest angle", "Median edge, mm"},
                       {}};
+    if (run.options.measuresWalls) table.columns.push_back("To print");
     for (const SurfaceRun& surface : run.surfaces) {
         if (!surface.error.empty()) continue;
         const SurfaceFacts& facts = surface.facts;
@@ -284,6 +301,7 @@ ReportTable surfaceTable(const CheckRun& run) {
                               facts.volumeMm3 ? formatMeasure(*facts.volumeMm3) : "–",
                               formatFixed(facts.shape.minAngleDeg.minimum, 2) + "°",
                               formatLength(facts.shape.edgeMm.median, 2)});
+        if (run.options.measuresWalls) table.rows.back().push_back(printText(facts));
     }
     return table;
 }
@@ -336,6 +354,7 @@ public:
         addDuplicates();
         addComponents();
         addSliver();
+        addThinWall();
         addDeviation();
         return std::move(spots_);
     }
@@ -429,6 +448,14 @@ private:
         const Spread& angles = surface_.facts.shape.minAngleDeg;
         spots_.push_back({"smallest angle, " + formatFixed(angles.minimum, 2) + " degrees," + in_,
                           middleOf(mesh_, angles.triangleOfMinimum), check->isRequired});
+    }
+
+    void addThinWall() {
+        const Check* check = failed(surface_.checks, "minWall");
+        if (!check) return;
+        const WallReport& walls = *surface_.facts.walls;
+        spots_.push_back({"thinnest wall, " + wallText(walls) + "," + in_,
+                          middleOf(mesh_, walls.triangle), check->isRequired});
     }
 
     void addDeviation() {

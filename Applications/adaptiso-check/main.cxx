@@ -51,6 +51,10 @@ void declareRequirements(CLI::App& app, CheckOptions& options) {
         "--min-angle", "DEG", options.minAngleDeg, {.least = 0, .most = 60, .unit = "degrees"},
         "Smallest angle of a triangle that passes, 0 to 60, in any profile (default: 1, in "
         "bem only)");
+    required.number("--min-wall", "MM", options.minWallMm,
+                    {.least = 0, .isAbove = true, .unit = "mm"},
+                    "Thinnest wall that passes, in any profile (with --profile print as given: a "
+                    "warning below 0.8)");
     required.number(
         "--max-off", "MM", options.maxOffMm, length,
         "With --iso: largest distance from the isosurface that passes (default: the mean "
@@ -152,6 +156,7 @@ void declareCheckOptions(CLI::App& app, CheckOptions& options) {
             return;
         }
         checkCombinations(options);
+        options.measuresWalls = options.minWallMm || options.profile == Profile::Print;
         const std::vector<std::pair<const char*, std::filesystem::path>> named{
             {"--report", options.report.page}, {"--pictures", options.report.pictures}};
         checkPlaceholders(named, options.batch, options.common);

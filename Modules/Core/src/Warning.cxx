@@ -62,6 +62,7 @@ constexpr WarningCode kCodes[] = {
     {"surface-unsound", "the surface has faults (holes aside)"},
     {"t2-weighted", "CSF is brighter than brain in an image given as a T1"},
     {"thickness-unusual", "skull or scalp of a head model is unusually thick, thin or uneven"},
+    {"thin-walls", "a solid has walls thinner than a printer makes"},
     {"trailing-bytes", "bytes follow the image that the header describes; they were left out"},
     {"uids-differ", "slices have UIDs of their own; they were read as one series"},
     {"unit-converted", "lengths were converted to millimetres"},

@@ -142,6 +142,14 @@ std::string_view sizeWord(SizeVerdict verdict) {
     return kWords[static_cast<std::size_t>(verdict)];
 }
 
+Json wallsJson(const std::optional<WallReport>& walls) {
+    if (!walls || !walls->hasWall()) return nullptr;
+    return {{"leastMm", number(walls->leastMm)},
+            {"triangle", walls->triangle},
+            {"pointMm", vector(walls->pointMm)},
+            {"thinAreaMm2", number(walls->thinAreaMm2)}};
+}
+
 Json sizeJson(const SizeReport& size) {
     return {{"extentMm", vector(size.extentMm)},
             {"verdict", sizeWord(size.verdict)},
@@ -175,6 +183,7 @@ Json factsJson(const SurfaceFacts& facts) {
         {"areaMm2", number(facts.areaMm2)},
         {"volumeMm3", facts.volumeMm3 ? number(*facts.volumeMm3) : Json(nullptr)},
         {"size", sizeJson(facts.size)},
+        {"walls", wallsJson(facts.walls)},
         {"solidAngleShare", number(facts.solidAngle.share)},
         {"defects", defectsJson(facts)},
         {"examples", examplesJson(facts)},

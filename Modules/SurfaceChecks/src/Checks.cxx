@@ -68,6 +68,16 @@ SurfaceFacts measureSurface(TriangleMesh& mesh, const SizeLimits& sizeLimits,
     return facts;
 }
 
+void measureWallsOf(const TriangleMesh& mesh, double limitMm, SurfaceFacts& facts) {
+    if (!facts.insideOut || !facts.insideOut->empty()) return;
+    facts.walls = measureWalls(mesh, limitMm);
+}
+
+std::string wallText(const WallReport& walls) {
+    constexpr double kEdgeMm = 0.01;  // what sharp edges run out to
+    return walls.leastMm < kEdgeMm ? "below 0.01 mm" : formatFixed(walls.leastMm, 2) + " mm";
+}
+
 namespace {
 
 /// A question, and the profiles that need it answered with yes.
@@ -107,6 +117,7 @@ constexpr Rule kUnused{"noUnusedVertices", "no unused vertex", true, false, fals
 constexpr Rule kCrossings{"noSelfIntersections", "no self-intersection", true, true, false};
 constexpr Rule kMinAngle{"minAngle", "smallest angle", true, false, false};
 constexpr Rule kSize{"plausibleSize", "size plausible in mm", true, true, false};
+constexpr Rule kMinWall{"minWall", "walls", false, false, false};
 constexpr Rule kSolidAngle{"solidAngle", "MNE's solid angle", true, false, false};
 constexpr Rule kDeviation{"onIsosurface", "on the isosurface", true, true, true};
 constexpr Rule kNoCrossing{"noCrossing", "no crossing", true, true, true};
@@ -300,6 +311,27 @@ private:
         addUnless(kSolidAngle, !facts_.solidAngle.isMet(),
                   "the solid angle from the vertices' mean is " + formatFixed(share, 6) +
                       " of the sphere, must be 1 to within 0.00001");
+        if (rules_.measuresWalls) judgeWalls();
+    }
+
+    void judgeWalls() {
+        if (!facts_.walls) {
+            add(kMinWall, Outcome::Undecided,
+                "only a closed, manifold and outward surface has walls");
+        } else if (!facts_.walls->hasWall()) {
+            add(kMinWall, Outcome::Undecided, "no two sides face each other");
+        } else {
+            const WallReport& walls = *facts_.walls;
+            const double limit = rules_.wallLimitMm();
+            const bool holds = walls.leastMm >= limit;
+            std::string finding = "thinnest " + wallText(walls) + " at " + at(walls.pointMm);
+            if (!holds) {
+                finding += ", must be at least " + formatNumber(limit) + "; " +
+                           formatFixed(100 * walls.thinShare(), 1) + " % of the area is thinner";
+            }
+            add(kMinWall, holds, finding);
+        }
+        checks_.back().isRequired |= rules_.minWallMm.has_value();
     }
 
     void judgeAngle() {

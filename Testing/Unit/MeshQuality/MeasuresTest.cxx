@@ -6,9 +6,11 @@
 
 #include "Support/Meshes.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
 #include "adaptiso/MeshQuality/Shape.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/MeshQuality/Walls.h"
 #include "adaptiso/MeshQuality/Winding.h"
 
 namespace adaptiso {
@@ -17,6 +19,7 @@ namespace {
 using testing::cubeMesh;
 using testing::icosphere;
 using testing::merged;
+using testing::torusMesh;
 using testing::translated;
 
 TriangleMesh oneTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -119,6 +122,61 @@ TEST(Size, GuessesTheUnit) {
 TEST(Size, IsThatOfUsedFiniteVertices) {
     EXPECT_EQ(judgeSize(testing::withUnusedVertex(cubeMesh()), {}).extentMm, (Vec3{1, 1, 1}));
     EXPECT_EQ(judgeSize({}, {}).verdict, SizeVerdict::Unknown);
+}
+
+TEST(Walls, OfABoxAreItsSides) {
+    const WallReport walls = measureWalls(cubeMesh({0, 0, 0}, {3, 4, 5}), 3.5);
+    EXPECT_DOUBLE_EQ(walls.leastMm, 3);
+    EXPECT_DOUBLE_EQ(walls.areaMm2, 94);
+    EXPECT_DOUBLE_EQ(walls.thinAreaMm2, 40);  // the two sides of 4 x 5
+    EXPECT_EQ(measureWalls(cubeMesh({0, 0, 0}, {3, 4, 5}), 3).thinAreaMm2, 0);
+}
+
+TEST(Walls, OfShellsAreWhatLiesBetween) {
+    TriangleMesh cavity = cubeMesh({0.5, 2, 2}, {18, 18, 18});
+    for (Triangle& t : cavity.triangles) std::swap(t[0], t[1]);
+    const WallReport box = measureWalls(merged({cubeMesh({0, 0, 0}, {20, 20, 20}), cavity}), 1);
+    EXPECT_DOUBLE_EQ(box.leastMm, 0.5);
+    EXPECT_TRUE(box.pointMm.x == 0 || box.pointMm.x == 0.5) << box.pointMm.x;
+    EXPECT_GT(box.thinAreaMm2, 16 * 16);  // the cavity's side at least
+    EXPECT_LT(box.thinAreaMm2, 16 * 16 + 20 * 20);
+
+    cavity = icosphere(4, {}, 8.5);
+    for (Triangle& t : cavity.triangles) std::swap(t[0], t[1]);
+    const WallReport ball = measureWalls(merged({icosphere(4, {}, 10), cavity}), 1.6);
+    EXPECT_NEAR(ball.leastMm, 1.5, 0.02);  // chords of 4.6 degrees lie 0.01 mm within the sphere
+    EXPECT_DOUBLE_EQ(ball.thinShare(), 1);
+    EXPECT_NEAR(measureWalls(icosphere(4, {}, 10), 1).leastMm, 20, 0.04);
+}
+
+TEST(Walls, AreFoundFromTheirSmallerSide) {
+    // 0.3 mm above the ground, below no middle or corner of the ground's two triangles
+    TriangleMesh cavity = cubeMesh({60, 55, 0.3}, {61, 56, 1.3});
+    for (Triangle& t : cavity.triangles) std::swap(t[0], t[1]);
+    const WallReport walls =
+        measureWalls(merged({cubeMesh({0, 0, 0}, {100, 100, 10}), cavity}), 0.8);
+    EXPECT_NEAR(walls.leastMm, 0.3, 1e-12);
+    EXPECT_GT(walls.pointMm.x, 59);
+}
+
+TEST(Walls, AreNotFormedByEdges) {
+    const TriangleMesh tetrahedron{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
+                                   {},
+                                   {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
+    ASSERT_GT(enclosedVolume(tetrahedron), 0);
+    EXPECT_FALSE(measureWalls(tetrahedron, 1).hasWall());  // sides lean by 70.5 degrees
+    EXPECT_FALSE(measureWalls({}, 1).hasWall());
+}
+
+TEST(Walls, AreTheSameForAnyNumberOfThreads) {
+    const TriangleMesh torus = torusMesh(300, 100, 20, 4);
+    const WallReport many = measureWalls(torus, 7.9999);
+    const ThreadLimitGuard one(1);
+    const WallReport alone = measureWalls(torus, 7.9999);
+    EXPECT_EQ(many.leastMm, alone.leastMm);
+    EXPECT_EQ(many.triangle, alone.triangle);
+    EXPECT_EQ(many.thinAreaMm2, alone.thinAreaMm2);
+    EXPECT_NEAR(many.leastMm, 8, 0.02);
 }
 
 TEST(SolidAngle, IsTheWholeSphereFromInsideAndNothingFromOutside) {

@@ -14,6 +14,7 @@
 #include "adaptiso/MeshQuality/Shape.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/MeshQuality/Walls.h"
 
 namespace adaptiso {
 
@@ -31,6 +32,7 @@ struct SurfaceFacts {
     /// Numbers of the pieces that are the wrong way round; empty if that is undefined: the
     /// surface is open, not manifold, not oriented, or not finite.
     std::optional<std::vector<std::int64_t>> insideOut;
+    std::optional<WallReport> walls;  ///< empty unless measured: measureWallsOf()
     double areaMm2 = 0;               ///< of the triangles with finite corners
     std::optional<double> volumeMm3;  ///< empty unless closed, manifold and oriented
 
@@ -43,6 +45,12 @@ struct SurfaceFacts {
 /// \param maxPairs  of triangles that cross, to list
 SurfaceFacts measureSurface(TriangleMesh& mesh, const SizeLimits& sizeLimits,
                             std::int64_t maxPairs);
+
+/// Measures facts.walls, if the surface is closed, manifold, and faces outward.
+void measureWallsOf(const TriangleMesh& mesh, double limitMm, SurfaceFacts& facts);
+
+/// The thinnest wall: "0.42 mm", "below 0.01 mm". \pre walls.hasWall()
+std::string wallText(const WallReport& walls);
 
 /// Use of a surface, which determines the required checks.
 enum class Profile {
@@ -64,10 +72,17 @@ struct CheckRules {
     std::optional<double> minGapMm;     ///< default: kDefaultMinGapMm, required of Bem only
     std::optional<double> minAngleDeg;  ///< default: kDefaultMinAngleDeg, required of Bem only
     std::optional<double> maxOffMm;     ///< default: half a voxel on the mean
+    bool measuresWalls = false;         ///< costs more than all other checks of a surface
+    std::optional<double> minWallMm;    ///< default: kDefaultMinWallMm, and not required
     std::int64_t maxPairs = 1000;       ///< of triangles that cross, to list
 
     static constexpr double kDefaultMinGapMm = 0.5;   // thinner than any bone of the skull
     static constexpr double kDefaultMinAngleDeg = 1;  // slivers that only bad remeshing leaves
+
+    /// Two lines of the usual nozzle of 0.4 mm, the least that guides for filament printers name.
+    static constexpr double kDefaultMinWallMm = 0.8;
+
+    double wallLimitMm() const { return minWallMm.value_or(kDefaultMinWallMm); }
 
     Profile profileInUse() const {
         return profile.value_or(isNested ? Profile::Bem : Profile::Print);
