@@ -1,6 +1,7 @@
 """Headless Chromium, as the tests of report pages use it."""
 
 import base64
+import contextlib
 import io
 import json
 import shutil
@@ -68,6 +69,18 @@ class Browser:
         """The page's own width; windows of Chromium are never as narrow as a phone."""
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
             "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600})
+
+    @contextlib.contextmanager
+    def dark(self):
+        """The page as a system in dark colours shows it."""
+        def prefer(scheme):
+            self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
+                "features": [{"name": "prefers-color-scheme", "value": scheme}]})
+        prefer("dark")
+        try:
+            yield
+        finally:
+            prefer("")
 
     def violations(self, axe):
         """What axe-core (its script) finds wrong: rule and the first element, for each."""

@@ -44,11 +44,16 @@ std::string pointText(const Vec3& rasMm) {
            formatFixed(rasMm.z, 1);
 }
 
+/// \param column  what phones, which show a row as a card, put before it
+std::string cell(const std::string& column, const std::string& text) {
+    return "<td data-label=\"" + escaped(column) + "\">" + escaped(text) + "</td>";
+}
+
 std::string checkRow(const ReportCheck& check) {
     const OutcomeWords words = wordsOf(check.outcome);
     return std::string("<tr><td class=\"outcome ") + words.style + "\">" + words.text +
-           "</td><th scope=\"row\">" + escaped(check.name) + "</th><td>" + escaped(check.subject) +
-           "</td><td>" + escaped(check.finding) + "</td></tr>\n";
+           "</td><th scope=\"row\">" + escaped(check.name) + "</th>" + cell("Of", check.subject) +
+           cell("Found", check.finding) + "</tr>\n";
 }
 
 std::string checkTable(const std::string& label, const std::vector<const ReportCheck*>& checks) {
@@ -85,7 +90,7 @@ std::string tableHtml(const ReportTable& table) {
         html += "<tr>";
         for (std::size_t n = 0; n < row.size(); ++n) {
             html += n == 0 ? "<th scope=\"row\">" + escaped(row[n]) + "</th>"
-                           : "<td>" + escaped(row[n]) + "</td>";
+                           : cell(table.columns[n], row[n]);
         }
         html += "</tr>\n";
     }

@@ -89,7 +89,7 @@ TEST(Views, AreTheSameForAnyNumberOfThreads) {
 TEST(Views, ShowRegionsTogetherAndBrokenSurfacesAsFarAsTheyGo) {
     Example example;
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    example.report.surfaces.push_back({"broken", {{{kNan, 0, 0}, {1, 0, 0}}, {{0, 1, 7}}, {}}});
+    example.report.surfaces.push_back({"broken", {{{kNan, 0, 0}, {1, 0, 0}}, {}, {{0, 1, 7}}}});
     EXPECT_EQ(drawViews(example.report, {.width = 40, .height = 30}).size(), 3U);
     example.report.areRegions = true;
     const std::vector<Picture> together = drawViews(example.report, {.width = 40, .height = 30});
