@@ -29,12 +29,12 @@ scan=/usr/share/mricron/templates/ch2bet.nii.gz # T1 MRI of one head, skull remo
 mkdir -p "$out"
 echo "== meshing and drawing $scan"
 build/release/bin/adaptiso-mesh "$scan" --iso auto --largest --fill-cavities -o "$out/brain.vtp" \
-    --pictures "$out/pictures"
+    --pictures "$out/pictures" --picture-view 105,18
 
 cat <<END
 
 mesh:     $out/brain.vtp
-picture:  $out/pictures/surface-1.png
+picture:  $out/pictures/view-1.png
 program:  $top/build/release/bin/adaptiso-mesh --help
 the rest: cmake --build --preset release --target programs
 END

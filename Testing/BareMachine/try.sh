@@ -234,7 +234,7 @@ tryAll() {
 
     runInside "quickstart" Applications/quickstart/run.sh
     requireFile out/quickstart/brain.vtp
-    requireFile out/quickstart/pictures/surface-1.png
+    requireFile out/quickstart/pictures/view-1.png
     runInside "quickstart, again" Applications/quickstart/run.sh
     runInside "quickstart: a surface" \
         "build/release/bin/adaptiso-mesh /usr/share/mricron/templates/ch2bet.nii.gz --iso 100 -o out/brain.stl"
