@@ -19,8 +19,6 @@ namespace {
 using Number = SurfaceState::Number;
 
 constexpr std::int64_t kPiece = 256, kFinePiece = 2048;
-/// A tree serves as long as no more than this part of the triangles have changed.
-constexpr std::size_t kFewChanges = 64;
 
 Corners cornersOf(const SimplifiedSurface& surface, std::uint64_t t) {
     const SurfaceState::Triangle& c = surface.triangles[t];
@@ -40,8 +38,7 @@ template <class Index>
 struct Target {
     const WalkableSurface<Index>& walkable;
     TriangleView view;
-    TreeOnDemand& tree;              ///< of the view
-    std::span<const Index> changed;  ///< triangles that are new or have changed since it was made
+    TreeOnDemand& tree;  ///< of the view
 };
 
 /// Bounds how far triangles of one surface are from another; keeps its working memory.
@@ -116,7 +113,7 @@ private:
             for (const Corners& t : bound_.nearby()) {
                 nearest = std::min(nearest, squaredDistanceToTriangle(corner, t));
             }
-            if (near_.empty()) nearest = squaredDistanceTo(corner);
+            if (near_.empty()) nearest = to_.tree.get().squaredDistance(corner, to_.view);
             reachMm = std::max(reachMm, std::sqrt(nearest));
         }
         if (near_.empty() || reachMm > bound_.boundMm()) collectWithin(reachMm, piece);
@@ -129,22 +126,10 @@ private:
         box.widen(kRounding * distanceMm);
         near_.clear();
         bound_.nearby().clear();
-        const auto add = [&](Index t) {
+        to_.tree.get().forEachOverlap(box, to_.view, [&](Index t) {
             near_.push_back(t);
             bound_.nearby().push_back(to_.view.cornersOf(t));
-        };
-        to_.tree.get().forEachOverlap(box, to_.view, add);
-        for (const Index t : to_.changed) {
-            if (boxOf(to_.view.cornersOf(t)).overlaps(box)) add(t);
-        }
-    }
-
-    double squaredDistanceTo(const Vec3& p) const {
-        double nearest = to_.tree.get().squaredDistance(p, to_.view);
-        for (const Index t : to_.changed) {
-            nearest = std::min(nearest, squaredDistanceToTriangle(p, to_.view.cornersOf(t)));
-        }
-        return nearest;
+        });
     }
 
     template <class MakePlace>
@@ -373,7 +358,6 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface) {
         std::min(limitMm_, std::max(largestSampleDistance(surface), 0.01 * frame_.narrowestMm()));
     if (fine_.isEmpty()) fine_.assign(fineView_.points, fineView_.triangles);
     walkable_.assign(surface.points, surface.triangles);
-    treeIsMade_ = false;
     return prove(surface, Scope());
 }
 
@@ -396,19 +380,13 @@ void DistanceProof::follow(const SimplifiedSurface& surface, const SurfaceChange
     // some came and went meanwhile
     std::erase_if(changed, [&](Number t) { return t >= std::max(before, now); });
     walkable_.update(surface.points, surface.triangles, changed);
-    treeIsMade_ = treeIsMade_ && now >= before;  // it knows triangles by their numbers
-    changed_.insert(changed_.end(), changed.begin(), changed.end());
 }
 
 ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
     const TriangleView view{surface.points, surface.triangles};
-    if (!treeIsMade_ || changed_.size() > surface.triangles.size() / kFewChanges) {
-        tree_.emplace(view);
-        treeIsMade_ = false;
-        changed_.clear();
-    }
-    const Task task{{fine_, fineView_, fineTree_, {}},
-                    {walkable_, view, *tree_, changed_},
+    TreeOnDemand tree(view);
+    const Task task{{fine_, fineView_, fineTree_},
+                    {walkable_, view, tree},
                     assignedOf(surface, fineView_.points.size()),
                     frame_.voxelMm(),
                     enoughMm_,
@@ -436,7 +414,6 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& s
     if (std::any_of(results.begin(), results.end(),
                     [](const PartBound& result) { return result.hasSearched; })) {
         fineTree_.get();
-        treeIsMade_ = true;
     }
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
         results[finePieces + begin / kPiece] =

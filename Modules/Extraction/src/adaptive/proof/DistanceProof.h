@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "adaptiso/MeshQuality/TriangleTree.h"
@@ -79,10 +78,7 @@ private:
     double provedMm_ = 0;  ///< so far, of what lies within the limit
     // of the last surface; empty where none was proved, or all of it was the full one
     WalkableSurface<SurfaceState::Number> walkable_;
-    std::optional<TreeOnDemand> tree_;
-    bool treeIsMade_ = false;
-    std::vector<SurfaceState::Number> changed_;  ///< triangles, since the tree was made
-    std::vector<std::uint8_t> isWithin_;         ///< the limit, each triangle
+    std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
     std::vector<std::uint8_t> isFine_;
     std::vector<PlaceBeyond> beyond_;
 };
