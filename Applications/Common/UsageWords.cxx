@@ -191,6 +191,11 @@ void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* arg
         if (value.starts_with("--") && optionNamed(app, beforeEquals(value)) != nullptr) {
             refuse("its value is missing; " + std::string(value) + " is an option");
         }
+        for (int more = 1; !hasOwn && more < option->get_items_expected_max() && n + 1 < argc &&
+                           argv[n + 1][0] != '-';
+             ++more) {
+            if (argv[++n][0] == '\0') refuse("its value is empty; give " + valueName(*option));
+        }
     }
 }
 

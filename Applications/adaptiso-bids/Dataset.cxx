@@ -152,9 +152,9 @@ std::optional<std::set<std::string>> listedParticipants(const fs::path& root) {
     std::set<std::string> listed;
     while (std::getline(file, line)) {
         const std::vector<std::string> row = cells(line);
-        if (column < std::ssize(row)) {
-            listed.insert(withPrefix(row[static_cast<std::size_t>(column)], "sub-"));
-        }
+        if (column >= std::ssize(row)) continue;
+        const std::string& id = row[static_cast<std::size_t>(column)];
+        if (!id.empty()) listed.insert(withPrefix(id, "sub-"));
     }
     return listed;
 }

@@ -240,7 +240,7 @@ class Participants(BidsTest):
 
     def test_participants_that_are_listed_and_not_there_are_warned_of(self):
         rows = "\n".join(f"sub-{number:02}\t3" for number in (1, 2, 3, 4, 5, 6, 9))
-        self.study.joinpath("participants.tsv").write_text(f"participant_id\tage\n{rows}\n")
+        self.study.joinpath("participants.tsv").write_text(f"participant_id\tage\n{rows}\n\n")
         done = self.bids(OK, "participant")
         self.assertEqual(done.stderr.splitlines(), [
             "adaptiso-bids: warning: participants.tsv: does not list sub-07",

@@ -73,6 +73,7 @@ WRONG = [
     (USAGE, "--output: its value is empty; give OUT", MESH, (*BALL, "--output=", "a.vtp")),
     (USAGE, "FILE: its value is empty", CHECK, ("",)),
     (USAGE, "--volume: its value is empty; give IMG", COMPARE, ("a.off", "a.off", "--volume", "")),
+    (USAGE, "--surfaces: its value is empty; give MESH...", BEM, ("--surfaces", "a.off", "", "c.off", "-o", "m")),
     (USAGE, "--t1: its value is empty; give IMG", BEM, ("--t1", "", "-o", "m")),
     (USAGE, "--report: its value is empty", BEM, ("--t1", "ball.nii", "-o", "m", "--report=")),
     # isovalues

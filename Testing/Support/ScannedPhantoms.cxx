@@ -1,7 +1,10 @@
 #include "Support/ScannedPhantoms.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace adaptiso::testing {
 namespace {

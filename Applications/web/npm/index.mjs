@@ -188,6 +188,7 @@ function parsePly(bytes) {
 async function toFile(input, toBytes, name) {
   if (typeof input !== "object" || input === null) throw new AdaptisoError("an input must be arrays, a NamedFile or a File", 2);
   if (typeof input.arrayBuffer === "function") {  // also of node:buffer, which is no global of Node 18
+    if (typeof input.name !== "string") throw new AdaptisoError("an input without a name: give a File, or { path, bytes }", 2);
     return { path: input.name, bytes: new Uint8Array(await input.arrayBuffer()) };
   }
   if (input.bytes !== undefined) return input;

@@ -217,13 +217,14 @@ private:
 
     /// Slices as pictures, most often.
     void refuseOtherFormat() {
-        if (others_.empty()) return;
-        const auto foreign = findForeignContent(others_.front());
-        if (!foreign || foreign->kind == ForeignKind::StandIn) return;
-        refuse(folder_,
-               fmt::format("no DICOM file found in this folder: {} {}",
-                           displayName(others_.front().filename()), foreign->fault),
-               foreign->remedy);
+        for (const fs::path& file : others_) {
+            const auto foreign = findForeignContent(file);
+            if (!foreign || foreign->kind == ForeignKind::StandIn) continue;
+            refuse(folder_,
+                   fmt::format("no DICOM file found in this folder: {} {}",
+                               displayName(file.filename()), foreign->fault),
+                   foreign->remedy);
+        }
     }
 
     /// One that lies beside what it holds is a copy; alone, it is a slice that would be missing.

@@ -362,7 +362,8 @@ TEST(AdaptiveMethod, BoundsTheDistanceOfTrianglesFarFromTheSurface) {
 
 TEST(AdaptiveMethod, NeedsTwelveTrianglesForAFlatBox) {
     // a box between samples: its surface is bevelled by half a voxel, so a bound of half a voxel
-    // leaves the corners alone, and a larger one nothing but the box
+    // leaves the corners alone, and a larger one nothing but the box.
+    // 24 triangles would do for the first; collapses end at 26
     const HardVolume box = binaryVolume({24, 20, 16}, [](auto x, auto y, auto z) {
         return x > 3 && x < 20 && y > 3 && y < 16 && z > 3 && z < 12;
     });

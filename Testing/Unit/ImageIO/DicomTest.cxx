@@ -251,6 +251,7 @@ TEST(DicomDamage, DeepNestingAndWrongLengthsAreRefused) {
 TEST(DicomFolder, WithoutImagesIsRefused) {
     const TempFolder folder;
     expectRefusal(folder.path(), "no DICOM file found");
+    writeFile(folder / "about.txt", "pictures\n");
     writeFile(folder / "slice2.png", "\x89PNG\r\n\x1a\n" + std::string(60, ' '));
     expectRefusal(folder.path(), "slice2.png is a PNG picture; convert pictures to NRRD");
     writeFile(folder / "slice.dcm", "");

@@ -93,6 +93,9 @@ describe("mesh", () => {
   it("reads a File", async () => {
     near(volume((await mesh(new File([nifti1(ball(12))], "ball.nii"), { iso: 100 })).mesh), ballVolume(12), 0.03);
   });
+  it("refuses a Blob, which has no name", async () => {
+    await assert.rejects(mesh(new Blob([nifti1(ball(12))]), { iso: 100 }), { message: /without a name/, exitCode: 2 });
+  });
   it("reads names that look like options", async () => {
     near(volume((await mesh({ path: "--iso.nii", bytes: nifti1(ball(12)) }, { iso: 100 })).mesh), ballVolume(12), 0.03);
   });

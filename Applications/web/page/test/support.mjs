@@ -20,7 +20,8 @@ export async function openPage(browserName, { width = 1280, height = 900, isDark
     protocolTimeout: 600_000, timeout: 120_000,
     args: browserName === "chrome" ? ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] : [],
     extraPrefsFirefox: { "browser.download.folderList": 2, "browser.download.dir": downloads,
-      "browser.download.useDownloadDir": true, "browser.download.alwaysOpenPanel": false,  // which takes the focus "browser.helperApps.neverAsk.saveToDisk": "application/octet-stream",
+      "browser.download.useDownloadDir": true, "browser.helperApps.neverAsk.saveToDisk": "application/octet-stream",
+      "browser.download.alwaysOpenPanel": false,  // the panel takes the focus
       "webgl.force-enabled": true },
     ...(browserName === "chrome" ? { downloadBehavior: { policy: "allow", downloadPath: downloads } } : {}) });
   const page = await browser.newPage();

@@ -83,7 +83,6 @@ std::set<std::array<Place, 3>> byCorners(const SurfaceState& surface) {
 
 }  // namespace
 
-// Merging the start's vertices into their heirs gives the surface.
 /// A ball beside a speck of one voxel. The speck counts as inside out as long as the ball's surface
 /// near it is not the full one.
 class BallBesideSpeck final : public detail::FullSurface {
@@ -148,6 +147,7 @@ TEST(LocalUndo, GoesFartherAroundPiecesThatStayInsideOut) {
     EXPECT_TRUE(isSound(made.mesh));
 }
 
+// Merging the start's vertices into their heirs gives the surface.
 TEST(LocalUndo, StandsOnHeirsThatMakeTheSurface) {
     const CoarseSphere sphere;
     ASSERT_LT(sphere.surface.triangles.size(), sphere.start.triangles.size() / 4);
