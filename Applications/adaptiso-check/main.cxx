@@ -1,5 +1,7 @@
+#include <filesystem>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Common/CommonFrame.h"
@@ -9,6 +11,7 @@
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Pipeline.h"
+#include "adaptiso/MeshIO/FiffSurfaces.h"
 
 namespace adaptiso::checker {
 namespace {
@@ -154,6 +157,13 @@ void declareCheckOptions(CLI::App& app, CheckOptions& options) {
         if (options.isSelfTest) {
             checkSelfTestAlone(app);
             return;
+        }
+        if (!options.batch.isAsked()) {
+            std::vector<std::filesystem::path> files;
+            for (const auto& file : options.files) {
+                for (auto& path : surfacePaths(file)) files.push_back(std::move(path));
+            }
+            options.files = std::move(files);
         }
         checkCombinations(options);
         options.measuresWalls = options.minWallMm || options.profile == Profile::Print;

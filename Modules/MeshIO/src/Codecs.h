@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "Bytes.h"
@@ -41,6 +42,14 @@ MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options);
 MeshFile decodeOpenMeeg(std::string_view bytes);
+
+/// FIFF is read alone. Its points are in the frame of FreeSurfer's surfaces, here in mm.
+const MeshFormat& fiffFormat();
+/// \param surface  its name ("outer_skin"); empty: the file holds one
+MeshFile decodeFiff(std::string_view bytes, std::string_view surface,
+                    const MeshReadOptions& options);
+/// "model-bem.fif" and "outer_skin" of "model-bem.fif:outer_skin"; else the path and an empty text.
+std::pair<std::filesystem::path, std::string> fiffPart(const std::filesystem::path& path);
 
 /// The writer and, if options.saysFrame, the frame, on one line:
 /// "adaptiso surface, CoordinateFrame: RAS mm".

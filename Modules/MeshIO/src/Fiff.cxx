@@ -2,13 +2,16 @@
 
 #include "Fiff.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "Bytes.h"
+#include "Codecs.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 
 namespace adaptiso::meshio::fiff {
@@ -386,18 +389,115 @@ void writeFiffHeadToMri(const AffineTransform& metres, const std::filesystem::pa
     });
 }
 
-std::vector<FiffSurface> decodeFiffSurfaces(std::string_view bytes, std::string_view name) {
-    return meshio::naming(name, [&] {
-        const fiff::Content content = fiff::decode(bytes);
-        std::vector<FiffSurface> surfaces;
-        for (std::size_t block = 1; block < content.blocks.size(); ++block) {
-            if (content.blocks[block].kind == fiff::kBemSurface) {
-                surfaces.push_back(decodeSurface(content, block));
-            }
+namespace {
+
+std::vector<FiffSurface> surfacesIn(const fiff::Content& content) {
+    std::vector<FiffSurface> surfaces;
+    for (std::size_t block = 1; block < content.blocks.size(); ++block) {
+        if (content.blocks[block].kind == fiff::kBemSurface) {
+            surfaces.push_back(decodeSurface(content, block));
         }
-        if (surfaces.empty()) unsupported("it holds no surface", "give a file of surfaces");
-        return surfaces;
-    });
+    }
+    if (surfaces.empty()) unsupported("it holds no surface", "give a file of surfaces");
+    return surfaces;
+}
+
+}  // namespace
+
+std::vector<FiffSurface> decodeFiffSurfaces(std::string_view bytes, std::string_view name) {
+    return meshio::naming(name, [&] { return surfacesIn(fiff::decode(bytes)); });
+}
+
+namespace {
+
+std::string nameOf(const FiffSurface& surface) {
+    switch (surface.id) {
+        case 1:
+            return "inner_skull";
+        case 3:
+            return "outer_skull";
+        case 4:
+            return "outer_skin";
+        default:
+            return "surface-" + std::to_string(surface.id);
+    }
+}
+
+/// Names of a file's surfaces, inside out as FIFF's numbers grow.
+std::vector<std::string> namesOf(std::vector<FiffSurface> surfaces) {
+    std::ranges::stable_sort(surfaces, {}, &FiffSurface::id);
+    std::vector<std::string> names;
+    for (const FiffSurface& surface : surfaces) names.push_back(nameOf(surface));
+    return names;
+}
+
+}  // namespace
+
+namespace meshio {
+
+const MeshFormat& fiffFormat() {
+    static constexpr std::string_view kExtension[] = {".fif"};
+    static constexpr MeshFormat kFormat{MeshFormatId::FreeSurfer,
+                                        "FIFF (MNE)",
+                                        kExtension,
+                                        CoordinatePrecision::Float32,
+                                        false,
+                                        true,
+                                        false,
+                                        false,
+                                        false,
+                                        false,
+                                        true,
+                                        std::numeric_limits<std::int32_t>::max()};
+    return kFormat;
+}
+
+std::pair<std::filesystem::path, std::string> fiffPart(const std::filesystem::path& path) {
+    const std::string text = path.string();
+    const std::size_t colon = text.rfind(".fif:");
+    std::error_code error;
+    if (colon == std::string::npos || std::filesystem::exists(path, error)) return {path, ""};
+    return {text.substr(0, colon + 4), text.substr(colon + 5)};
+}
+
+MeshFile decodeFiff(std::string_view bytes, std::string_view surface,
+                    const MeshReadOptions& options) {
+    constexpr double kMmPerM = 1000;
+    std::vector<FiffSurface> surfaces = surfacesIn(fiff::decode(bytes));
+    const std::vector<std::string> names = namesOf(surfaces);
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    if (!surface.empty()) {
+        std::erase_if(surfaces, [&](const FiffSurface& one) { return nameOf(one) != surface; });
+        if (surfaces.size() != 1) {
+            unsupported("it holds no surface " + printable(surface) + " but " + list, "name one");
+        }
+    }
+    if (surfaces.size() > 1) {
+        unsupported("it holds " + std::to_string(surfaces.size()) + " surfaces",
+                    "name one behind a colon, as in model.fif:" + names.back() + " (" + list + ")");
+    }
+    MeshFile file;
+    file.mesh = std::move(surfaces.front().mesh);
+    for (Vec3& point : file.mesh.points) point = kMmPerM * point;
+    file.frame = options.inputCoordinates.value_or(CoordinateFrame::TkRas);
+    return file;
+}
+
+}  // namespace meshio
+
+std::vector<std::filesystem::path> surfacePaths(const std::filesystem::path& path) {
+    if (path.extension() != ".fif") return {path};
+    std::vector<std::string> names;
+    try {
+        names = namesOf(readFiffSurfaces(path));
+    } catch (const FileError&) {
+        return {path};  // who reads it says what is wrong
+    }
+    if (names.size() < 2) return {path};
+    std::vector<std::filesystem::path> paths;
+    for (const std::string& name : names) paths.emplace_back(path.string() + ":" + name);
+    return paths;
 }
 
 std::vector<FiffSurface> readFiffSurfaces(const std::filesystem::path& path) {

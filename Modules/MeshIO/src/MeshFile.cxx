@@ -7,6 +7,7 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "Fiff.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Text.h"
@@ -198,6 +199,7 @@ constexpr std::string_view kGzipMagic = "\x1F\x8B";
 const MeshFormat& formatOf(std::string_view bytes, std::string_view name, bool isPacked) {
     const std::string_view head = bytes.substr(0, kMeshHeadBytes);
     if (const MeshFormat* const found = recognizeMeshFormat(head, bytes.size())) return *found;
+    if (head.starts_with(meshio::fiff::kMagic)) return meshio::fiffFormat();
     const std::filesystem::path path(name);
     meshio::naming(name, [&] { meshio::refuseOtherContent(head, bytes.size(), path, isPacked); });
     try {
@@ -281,7 +283,9 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
                     const MeshReadOptions& options) {
     return meshio::naming(name, [&] {
-        MeshFile file = codecOf(format.id).decode(meshio::withoutMark(bytes), options);
+        MeshFile file = &format == &meshio::fiffFormat()
+                            ? meshio::decodeFiff(bytes, meshio::fiffPart(name).second, options)
+                            : codecOf(format.id).decode(meshio::withoutMark(bytes), options);
         file.format = &format;
         if (options.keepsFaults) {
             requireSomething(file.mesh);
@@ -317,16 +321,18 @@ MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& opti
                         "adaptiso-mesh makes surfaces");
     }
     // images may be large: the head is enough
-    const std::string head = meshio::readBytes(path, kMeshHeadBytes);
-    const std::uint64_t byteCount = std::filesystem::file_size(path, error);
-    if (!head.starts_with(kGzipMagic) && !recognizeMeshFormat(head, byteCount)) {
-        meshio::naming(name, [&] { meshio::refuseOtherContent(head, byteCount, path, false); });
-        const auto foreign = findForeignContent(path);  // zeros, whatever their length
+    const std::filesystem::path file = meshio::fiffPart(path).first;
+    const std::string head = meshio::readBytes(file, kMeshHeadBytes);
+    const std::uint64_t byteCount = std::filesystem::file_size(file, error);
+    if (!head.starts_with(kGzipMagic) && !head.starts_with(meshio::fiff::kMagic) &&
+        !recognizeMeshFormat(head, byteCount)) {
+        meshio::naming(name, [&] { meshio::refuseOtherContent(head, byteCount, file, false); });
+        const auto foreign = findForeignContent(file);  // zeros, whatever their length
         if (foreign) throw FileError(name + ": " + foreign->fault + "; " + foreign->remedy);
     }
     MeshReadOptions beside = options;
     beside.folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-    return decodeMesh(meshio::readBytes(path), name, beside);
+    return decodeMesh(meshio::readBytes(file), name, beside);
 }
 
 }  // namespace adaptiso

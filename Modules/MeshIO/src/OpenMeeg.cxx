@@ -1,26 +1,84 @@
-// OpenMEEG .tri: "- V", V lines "x y z nx ny nz", "- T T T", T lines "i j k" from 0. Normals are
+// .tri. OpenMEEG's: "- V", V lines "x y z nx ny nz", "- T T T", T lines "i j k" from 0. Normals are
 // part of the format: a reader given three numbers a line takes garbage for the rest.
+
+#include <cmath>
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso::meshio {
 
 namespace {
 
+constexpr double kMostCorner = 1e15;
+
 void requireDash(ByteSource& source, std::string_view what) {
     const std::string_view dash = source.requireWord("'-'");
-    if (dash != "-" && what == "points" &&
-        dash.find_first_not_of("0123456789") == std::string_view::npos) {
-        unsupported(
-            "it begins with a number, as FreeSurfer's .tri does, not with '-' as OpenMEEG's",
-            "convert it, e.g. with mris_convert");
-    }
     if (dash != "-") {
         malformed("the number of " + std::string(what) + " follows " + printable(dash) +
                   ", must follow '-'");
     }
+}
+
+bool beginsWithNumber(std::string_view bytes) {
+    const std::string_view text = trimmed(bytes);
+    return !text.empty() && text.front() >= '0' && text.front() <= '9';
+}
+
+/// Lines of numbers, as many on each as on the first; one more than triples take is the line's own.
+class NumberLines {
+public:
+    NumberLines(ByteSource& source, const char* what) : source_(source), what_(what) {
+        ByteSource line(source.line());
+        count_ = line.integerWord(what);
+        requireRoom(what, count_, 6, source.left());  // at least "0 0 0\n"
+    }
+
+    std::int64_t count() const { return count_; }
+
+    /// The first three.
+    Vec3 next() {
+        const std::string_view text = source_.line();
+        ByteSource line(text);
+        std::vector<double> numbers;
+        while (!trimmed(text.substr(text.size() - line.left())).empty()) {
+            numbers.push_back(line.realWord(what_));
+        }
+        if (perLine_ == 0) perLine_ = numbers.size();
+        const std::size_t first = numbers.size() % 3 == 1 ? 1 : 0;
+        if (numbers.size() != perLine_ || numbers.size() < 3) {
+            malformed(std::string("a line of ") + what_ + " has " + std::to_string(numbers.size()) +
+                      " numbers");
+        }
+        return {numbers[first], numbers[first + 1], numbers[first + 2]};
+    }
+
+private:
+    ByteSource& source_;
+    const char* what_;
+    std::int64_t count_ = 0;
+    std::size_t perLine_ = 0;
+};
+
+/// FreeSurfer's .tri, which MNE's tools write too: the number of points, a line "[i] x y z
+/// [normal]" each, the number of triangles, a line "[i] a b c ..." each, from 1.
+MeshFile decodeFreeSurferTri(std::string_view bytes) {
+    ByteSource source(bytes);
+    MeshFile file;
+    NumberLines points(source, "points");
+    for (std::int64_t n = 0; n < points.count(); ++n) file.mesh.points.push_back(points.next());
+    NumberLines triangles(source, "triangles");
+    for (std::int64_t n = 0; n < triangles.count(); ++n) {
+        const Vec3 corners = triangles.next();
+        Triangle& t = file.mesh.triangles.emplace_back();
+        for (int corner = 0; corner < 3; ++corner) {
+            if (!(std::abs(corners[corner]) < kMostCorner)) malformed("a triangle names no point");
+            t[corner] = static_cast<VertexId>(corners[corner]) - 1;
+        }
+    }
+    return file;
 }
 
 }  // namespace
@@ -44,6 +102,7 @@ void encodeOpenMeeg(const MeshRecord& record, ByteSink& sink) {
 }
 
 MeshFile decodeOpenMeeg(std::string_view bytes) {
+    if (beginsWithNumber(bytes)) return decodeFreeSurferTri(bytes);
     ByteSource source(bytes);
     MeshFile file;
     requireDash(source, "points");

@@ -61,6 +61,51 @@ TEST(FiffSurfaces, ComeBackWithNumberAndConductivity) {
     }
 }
 
+TEST(FiffSurfaces, AreReadAsSurfacesByName) {
+    const std::vector<FiffSurface> surfaces{
+        {4, 0.3, shell(0.09)}, {3, 0.006, shell(0.085)}, {1, 0.3, shell(0.08)}};
+    const auto path = temporaryFile("model-bem.fif");
+    writeFiffSurfaces(surfaces, path);
+    const auto paths = surfacePaths(path);
+    ASSERT_EQ(paths.size(), 3u);
+    EXPECT_TRUE(paths[0].string().ends_with(".fif:inner_skull"));
+    EXPECT_TRUE(paths[2].string().ends_with(".fif:outer_skin"));
+    for (std::size_t n = 0; n < 3; ++n) {
+        const MeshFile file = readMesh(paths[n]);
+        EXPECT_EQ(file.frame, CoordinateFrame::TkRas);
+        EXPECT_EQ(file.format->name, "FIFF (MNE)");
+        EXPECT_EQ(file.mesh.triangles, surfaces[2 - n].mesh.triangles);
+        // metres in float, read in mm
+        EXPECT_LE(norm(file.mesh.points[5] - 1000.0 * surfaces[2 - n].mesh.points[5]), 2e-5);
+    }
+    EXPECT_NE(refusalOf([&] { readMesh(path); }).find("outer_skin"), std::string::npos);
+    EXPECT_NE(refusalOf([&] { readMesh(path.string() + ":brain"); }).find("outer_skin"),
+              std::string::npos);
+    writeFiffSurfaces(std::span(surfaces).first(1), path);
+    EXPECT_EQ(surfacePaths(path).size(), 1u);
+    EXPECT_EQ(readMesh(path).mesh.points.size(), surfaces[0].mesh.points.size());
+}
+
+TEST(FreeSurferTri, IsReadWithAndWithoutNumbersAndNormals) {
+    const std::string numbered =
+        "4\n1 0 0 0\n2 9.5 0 0\n3 0 9 0\n4 0 0 9\n4\n1 1 3 2\n2 1 2 4\n3 1 4 3\n4 2 3 4\n";
+    const std::string bare =
+        "4\n0 0 0 1 0 0\n9.5 0 0 1 0 0\n0 9 0 1 0 0\n0 0 9 1 0 0\n4\n1 3 2\n1 2 4\n1 4 3\n2 3 4\n";
+    for (const std::string& text : {numbered, bare}) {
+        const MeshFile file = decodeMesh(text, "head.tri");
+        ASSERT_EQ(file.mesh.points.size(), 4u);
+        EXPECT_EQ(file.mesh.points[1].x, 9.5);
+        EXPECT_EQ(file.mesh.triangles[3], (Triangle{1, 2, 3}));
+        EXPECT_FALSE(file.frame);
+    }
+    const auto refused = [&](const std::string& text) {
+        return refusalOf([&] { decodeMesh(text, "head.tri"); });
+    };
+    EXPECT_NE(refused("99999999999\n1 2 3\n").find("head.tri: "), std::string::npos);
+    for (std::size_t cut = 0; cut + 2 < numbered.size(); ++cut) refused(numbered.substr(0, cut));
+    EXPECT_NE(refused("3\n0 0 0\n1 0 0\n0 1 0\n1\n1 2 7\n").find("point 6"), std::string::npos);
+}
+
 TEST(FiffSurfaces, HoldNeitherDateNorMachine) {
     const FiffSurface surface{4, 1, shell(0.09)};
     const std::string bytes = fiffBytes(surface);

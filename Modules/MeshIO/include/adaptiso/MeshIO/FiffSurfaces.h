@@ -55,6 +55,11 @@ void writeFiffHeadToMri(const AffineTransform& metres, const std::filesystem::pa
 ///                    is not in MRI coordinates, or a triangle names a point that is not there
 std::vector<FiffSurface> readFiffSurfaces(const std::filesystem::path& path);
 
+/// `path` or, where it is a FIFF file of several surfaces, a path that readMesh() takes for each,
+/// inside out: "model-bem.fif:inner_skull", "model-bem.fif:outer_skull",
+/// "model-bem.fif:outer_skin".
+std::vector<std::filesystem::path> surfacePaths(const std::filesystem::path& path);
+
 /// The same from bytes in memory.
 std::vector<FiffSurface> decodeFiffSurfaces(std::string_view bytes, std::string_view name);
 
