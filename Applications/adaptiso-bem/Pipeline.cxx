@@ -13,6 +13,7 @@
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "Run.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
 #include "adaptiso/HeadPipeline/BemReport.h"
@@ -251,6 +252,37 @@ void addCheck(BemModel& model, const TetrahedraCheck& check) {
     model.findings.push_back({"tetrahedra: " + check.name + ": " + check.detail, place});
 }
 
+/// Notes layers whose elements are longer than asked for: gmsh keeps the surfaces' triangles.
+void noteLongElements(BemModel& model, const TetrahedralMesh& mesh,
+                      std::span<const TetrahedraRegion> regions, double askedMm) {
+    constexpr double kLonger = 1.5, kNotedShare = 0.1;  // irregular ones are a half longer
+    for (const TetrahedraRegion& region : regions) {
+        std::int64_t count = 0, longer = 0;
+        double longestMm = 0;
+        for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
+            if (mesh.labels[n] != region.label) continue;
+            double mm = 0;
+            for (const VertexId a : mesh.tetrahedra[n]) {
+                for (const VertexId b : mesh.tetrahedra[n]) {
+                    mm = std::max(mm, norm(mesh.points[a] - mesh.points[b]));
+                }
+            }
+            ++count;
+            longer += mm > kLonger * askedMm ? 1 : 0;
+            longestMm = std::max(longestMm, mm);
+        }
+        const double share = static_cast<double>(longer) / static_cast<double>(count);
+        if (!(share > kNotedShare)) continue;
+        model.notes.push_back(
+            region.name + ": " + formatRounded(100 * share) +
+            " % of its elements are longer than " + formatShort(kLonger) +
+            " times --element-size " + formatShort(askedMm) + ", up to " +
+            formatLength(longestMm, 1) +
+            " mm, as the triangles of its surfaces are; tetgen splits these, and more --vertices "
+            "shorten them");
+    }
+}
+
 /// Fills the model's layers with tetrahedra by the mesher, run as a program (stage "tetrahedra"),
 /// and checks them; a failed check becomes a finding. \pre run.model.hasModel()
 /// \throws FileError  the mesher is missing, fails, or writes an unreadable file
@@ -264,6 +296,7 @@ void makeTetrahedra(BemRun& run, const BemHooks& hooks) {
         takeRegions(made.mesh, regions);
         made.report = checkTetrahedra(made.mesh, regions);
         model.notes.push_back(describeTetrahedra(made.mesh, made.report, made.mesher));
+        noteLongElements(model, made.mesh, regions, run.options.tetrahedra.elementMm);
         for (const TetrahedraCheck& check : judgeTetrahedra(made.report, regions)) {
             addCheck(model, check);
         }

@@ -62,6 +62,15 @@ class Tetrahedra(BemTest):
                 self.assertGreater(report["tetrahedra"]["dihedralDeg"]["minimum"], 1)
                 self.assertTrue(all(check["passed"] for check in report["checks"]))
 
+    def test_a_size_that_the_surfaces_do_not_allow_is_noted(self):
+        # 200 vertices on a sphere of 60 mm: edges of 16 mm
+        for mesher, size, layers in (("tetgen", "8", set()), ("gmsh", "8", {"csf", "skull", "scalp"}), ("gmsh", "16", set())):
+            if mesher not in MESHERS:
+                continue
+            self.bem(*self.four_layers(), "--tetrahedra", mesher, "--element-size", size, "--force", "-o", mesher)
+            noted = {note.split(":")[0] for note in self.report(mesher)["notes"] if "--element-size" in note}
+            self.assertEqual(noted - {"brain"}, layers, (mesher, size))
+
     @unittest.skipUnless(meshio, "needs python3-meshio")
     def test_meshio_reads_all_formats_alike(self):
         if not MESHERS:
