@@ -1,6 +1,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
+#include "adaptiso/MeshIO/FiffSurfaces.h"
 
 namespace adaptiso::bem {
 namespace {
@@ -167,11 +169,13 @@ void declareHead(CLI::App& app, BemOptions& options) {
         },
         "Least thickness of skull, scalp and (with --layers 4) CSF, guaranteed (default: 2,2,1)");
     for (const BemNumber& number : bemNumbers()) {
-        const bool isHu = number.mostMm == 0;
-        const NumberRule rule = isHu ? NumberRule{.unit = "HU"}
-                                     : NumberRule{.least = 0, .most = number.mostMm, .unit = "mm"};
-        group.number("--" + std::string(number.name), isHu ? "HU" : "MM",
-                     model.boundaries.*number.value, rule, std::string(number.help));
+        NumberRule rule{.unit = std::string(number.unit)};
+        if (number.most > 0) rule = {.least = 0, .most = number.most, .unit = rule.unit};
+        std::string valueName = rule.unit;
+        for (char& c : valueName)
+            c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        group.number("--" + std::string(number.name), valueName, model.boundaries.*number.value,
+                     rule, std::string(number.help));
     }
 }
 
@@ -380,6 +384,7 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareToolboxes(app, options);
     declareCommonOptions(app, options.common, "of the model only the report is then written");
     afterParsing(app, [&app, &options] {
+        if (options.surfaces.size() == 1) options.surfaces = surfacePaths(options.surfaces.front());
         checkCombinations(app, options);
         for (const CoordinateFrame frame : options.inputCoordinates) {
             options.model.inputCoordinates.emplace_back(frameWord(frame));

@@ -119,6 +119,21 @@ class Model(BemTest):
         self.assertIn("conductivity=(0.33, 0.0041, 0.43)",
                       (self.path("model") / "README.md").read_text())
 
+    def test_mnes_file_of_all_surfaces_is_read_again(self):
+        self.bem(*self.labels(), "--fif", "-o", "model")
+        again = self.bem("--surfaces", "model/bem.fif", "--volume", "seg.nii", "-o", "again")
+        self.assertEqual([part["role"] for part in self.report("again")["input"]["files"]], ["volume"] + ["surface"] * 3)
+        self.assertNotIn("moved", again.stderr)
+        for a, b in zip(self.report()["surfaces"], self.report("again")["surfaces"]):
+            self.assertEqual((a["name"], a["vertices"]), (b["name"], b["vertices"]))
+            self.assertAlmostEqual(a["volumeMm3"] / b["volumeMm3"], 1, 6)
+        done = subprocess.run([CHECK, "--nested", "model/bem.fif", "--json", "-"], cwd=self.folder,
+                              text=True, capture_output=True)
+        names = [surface["file"] for surface in json.loads(done.stdout[done.stdout.index("{"):])["surfaces"]]
+        self.assertEqual(names, [f"bem.fif:{name}" for name in ("inner_skull", "outer_skull", "outer_skin")])
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.fails(USAGE, "--surfaces needs 3 files", "--surfaces", "model/head-dense.fif", "-o", "one")
+
     def test_one_surface_for_meg(self):
         arguments = self.labels()
         self.bem(*arguments[:4], *QUICK, "--meg", "-o", "model")
@@ -383,12 +398,27 @@ class Plausibility(BemTest):
         # 60 mm: 905 cm3, a child's
         volume = notes["innerSkullVolume", "inner_skull"]
         self.assertEqual(volume["outcome"], "noted")
-        self.assertRegex(volume["finding"], r"^(8[5-9]|90)\d cm3; adults have 950 to 1900 cm3$")
+        self.assertRegex(volume["finding"], r"^(8[5-9]|90)\d cm3; adults have 950 to 1900 cm3; of a child give adaptiso-bem --age$")
         noted = [note for note in notes.values() if note["outcome"] == "noted"]
         self.assertRegex(done.stdout, rf"\n\d+ of \d+ checks passed; {len(noted)} of {len(notes)} "
                                       "questions of plausibility noted")
         self.assertIn("\n  noted: inner_skull: volume of the inner skull: ", done.stdout)
         self.assertRegex(done.stdout, "\nhead model written to model/\n")
+
+    def test_a_head_cut_beside_the_brain_is_a_warning(self):
+        # the image ends at y = -66, where the outer skull does; the scalp behind is not in it
+        self.bem(*finer(self.labels(image=head(n=44, origin=(-86, -64, -86)))), "-o", "model")
+        cut, = [w for w in self.report()["warnings"] if w["code"] == "head-cut"]
+        self.assertRegex(cut["text"], r"^outer_skin: .* on the image's back face: the head is cut there")
+
+    def test_limits_are_those_of_the_age(self):
+        # 60 mm: 905 cm3; at half a year 513 to 1217
+        self.bem(*self.labels(), "--age", "0.5", "-o", "model")
+        volume, = [n for n in self.report()["plausibility"] if n["name"] == "innerSkullVolume"]
+        self.assertEqual(volume["outcome"], "passed")
+        self.assertRegex(volume["finding"], r"cm3, usual of heads of 0.5 years: 513 to 1217 cm3$")
+        self.assertEqual(self.report()["options"]["ageYears"], 0.5)
+        self.assertAlmostEqual(self.report()["options"]["skullMm"], 2.47, delta=0.01)
 
     def test_a_cut_head_is_noted_with_its_place(self):
         # the image ends at z = -66, where the outer skull does; the skin would reach 6 mm lower
@@ -399,6 +429,7 @@ class Plausibility(BemTest):
         self.assertEqual((flat["outcome"], flat["pointsIn"]), ("noted", "lps"))
         self.assertRegex(flat["finding"], r"^\d+ of 642 vertices .* on the image's lower face")
         self.assertAlmostEqual(flat["pointsMm"][0][2], -68, delta=3)  # the least scalp below
+        self.assertNotIn("head-cut", [w["code"] for w in self.report()["warnings"]])
 
 
 class Necks(BemTest):

@@ -82,11 +82,11 @@ class Notes(CheckTest):
     def test_sizes_that_adults_do_not_have(self):
         notes = self.noted([icosphere(radius) for radius in (50, 52.2, 53.8)])
         self.assertRegex(notes["innerSkullVolume", "inner.off"]["finding"],
-                         "^5[0-9]{2} cm3; adults have 950 to 1900 cm3$")
+                         "^5[0-9]{2} cm3; adults have 950 to 1900 cm3; of a child give adaptiso-bem --age$")
         self.assertRegex(notes["skullThickness", PAIR]["finding"],
-                         r"^median [12]\.\d mm .* adults have 3 to 12 mm$")
+                         r"^median [12]\.\d mm .* adults have 3 to 12 mm; of a child give adaptiso-bem --age$")
         self.assertRegex(notes["scalpThickness", "middle.off in outer.off"]["finding"],
-                         r"^median 1\.\d mm .* adults have 2 to 15 mm$")
+                         r"^median 1\.\d mm .* adults have 2 to 15 mm; of a child give adaptiso-bem --age$")
         # edges of 7.5 mm in a layer of 2
         self.assertRegex(notes["edgesAgainstGap", PAIR]["finding"],
                          r"^edges longer than 2 gaps at 100 % of the vertices, up to \d\.\d")

@@ -223,14 +223,36 @@ def seven_tesla(head):
     return rician(t1 * field * head.brain, 0.04, head.brain, 7)
 
 
-def scaled(head, factor):
+def thin(head, factor):
+    """Skull, scalp and face of an infant: what lies outside the inner skull comes nearer to it by a factor."""
+    nearest = ndimage.distance_transform_edt(head.inner <= 0, return_distances=False, return_indices=True)
+    grid = np.indices(head.t1.shape).astype(np.float32)
+    t1 = ndimage.map_coordinates(head.t1, nearest + (grid - nearest) / factor, order=1, mode="nearest")
+
+    def moved(points):
+        index = points - head.affine[:3, 3]
+        voxel = np.clip(np.round(index).astype(int), 0, np.array(head.t1.shape) - 1)
+        inner = nearest[:, voxel[:, 0], voxel[:, 1], voxel[:, 2]].T
+        is_outside = head.inner[tuple(voxel.T)] <= 0
+        return np.where(is_outside[:, None], inner + (index - inner) * factor, index) + head.affine[:3, 3]
+
+    return t1, moved
+
+
+def infant(head, size, factor):
+    t1, moved = thin(head, factor)
+    small = scaled(head, size, t1)
+    return *small[:3], lambda points: small[3](moved(points))
+
+
+def scaled(head, factor, t1=None):
     """The head of an infant: all of it smaller, in voxels of 1 mm."""
     shape = head.t1.shape
     affine = head.affine.copy()
     affine[:3, 3] = CENTRE + (head.affine[:3, 3] - CENTRE) * factor
     new = [int(np.ceil(s * factor)) for s in shape]
     grid = np.meshgrid(*[np.arange(n) / factor for n in new], indexing="ij")
-    sharp = ndimage.gaussian_filter(head.t1, 0.5)
+    sharp = ndimage.gaussian_filter(head.t1 if t1 is None else t1, 0.5)
     return (ndimage.map_coordinates(sharp, grid, order=1), ndimage.map_coordinates(head.mask, grid, order=0), affine,
             lambda points: CENTRE + (points - CENTRE) * factor)
 
@@ -290,6 +312,12 @@ def cases(head, packages=None):
     yield case("frame", "stereotactic frame with localizers", lambda: frame(head))
     yield case("seven-tesla", "7 T-like contrast and coil", lambda: seven_tesla(head))
     yield case("infant-72", "all of 72 % size", lambda: scaled(head, 0.72))
+    for size, years in ((0.7, 0.2), (0.8, 0.7), (0.9, 2)):
+        def young(size=size):
+            return infant(head, size, 0.5)
+        yield case(f"infant-thin-{100 * size:.0f}", f"{100 * size:.0f} % size, skull and scalp half as thick, with --age", young,
+                   options=["--age", years])
+        yield case(f"infant-untold-{100 * size:.0f}", "the same without --age", young, usable=False)
     yield case("t2", "T2-like", lambda: t2_like(head))
     for background in (0, 40, 255, "noise", "dura"):
         yield case(f"stripped-{background}", "ch2bet: no skull", lambda b=background: (stripped(head, b),), usable=False)

@@ -27,6 +27,7 @@ constexpr WarningCode kCodes[] = {
     {"guessed-position", "the image does not say its position; one was assumed"},
     {"guessed-spacing", "the image does not say its voxel size; 1 mm was assumed"},
     {"guessed-unit", "a file does not say its unit of length; one was assumed"},
+    {"head-cut", "the image cuts the head beside or above the brain, or the brain itself"},
     {"head-points-off", "digitized head points lie more than 5 mm from the skin on average"},
     {"inner-skull-dented",
      "the inner skull of a head model has a deep dent: a lesion, or lost brain"},

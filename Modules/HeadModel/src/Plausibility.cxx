@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "FinishBoundaries.h"
 #include "Necks.h"
 #include "Voxelized.h"
 #include "adaptiso/Core/AabbTree.h"
@@ -29,6 +30,23 @@ std::string fixed(double value, int digits) {
     std::snprintf(text.data(), text.size(), "%.*f", digits, value);
     return text.data();
 }
+
+/// Limits of UsualHead at an age, and between ages on straight lines.
+struct UsualAge {
+    double years;
+    std::array<double, 2> innerSkullCm3;  ///< least, most
+    std::array<double, 3> skullMm;        ///< least, usual, most
+    std::array<double, 2> scalpMm;        ///< least, most
+    double brainToSkinMm;
+};
+
+constexpr std::array<UsualAge, 5> kUsualAges{{
+    {0, {290, 700}, {1, 2, 4}, {1, 8}, 3},
+    {0.25, {400, 1100}, {1, 2.2, 4.5}, {1, 9}, 3},
+    {1, {740, 1450}, {1.5, 3, 6}, {1.2, 10}, 4},
+    {5, {880, 1750}, {2, 4, 8}, {1.5, 12}, 5},
+    {UsualHead::kAdultYears, {950, 1900}, {3, 6, 12}, {2, 15}, 8},
+}};
 
 std::string percent(double share) {
     return fixed(100 * share, share < 0.1 ? 1 : 0) + " %";
@@ -155,6 +173,7 @@ public:
     Questions(const std::vector<Asked>& surfaces, const PlausibilityOptions& options)
         : surfaces_(surfaces),
           options_(options),
+          usual_(options.usual),
           innerSkull_(options.areHeadLayers && surfaces.size() == kHeadSurfaceCount ? 1 : 0) {}
 
     std::vector<HeadNote> ask() && {
@@ -220,6 +239,7 @@ private:
         std::vector<VertexId> vertices;
         Vec3 middleMm;
         std::string where;
+        bool isLowerFace = false;  ///< of the image: most scans end in the neck
     };
 
     /// The part of a surface within `reachMm` of a plane, in triangles along it to 10 degrees.
@@ -262,10 +282,10 @@ private:
                 const double level = dot(image.toPhysical(index), normal);
                 const double voxel = std::abs(dot(axes[a], normal));
                 flats.push_back(onPlane(surface, normal, level, std::max(1.0, voxel) + 0.5));
-                flats.back().where =
-                    "on the image's " +
-                    faceName((end == 0) == (dot(axes[a], normal) > 0) ? -1.0 * normal : normal) +
-                    " face: the head is cut there";
+                const std::string face =
+                    faceName((end == 0) == (dot(axes[a], normal) > 0) ? -1.0 * normal : normal);
+                flats.back().where = "on the image's " + face + " face: the head is cut there";
+                flats.back().isLowerFace = face == "lower";
             }
         }
         return flats;
@@ -306,12 +326,23 @@ private:
         return flats;
     }
 
+    /// A cut through the inner skull, or of the skin beside or above it. Cuts of neck and chin are
+    /// usual, and far from brain and electrodes.
+    bool losesHead(std::size_t n, const std::vector<Flat>& flats) const {
+        if (n == innerSkull_) return !flats.empty();
+        const double lowest = surfaces_[innerSkull_].box.minimum.z;
+        return n + 1 == surfaces_.size() && std::ranges::any_of(flats, [&](const Flat& flat) {
+                   return !flat.isLowerFace && flat.middleMm.z > lowest;
+               });
+    }
+
     void askFlat(std::size_t n) {
         const Asked& surface = surfaces_[n];
         std::vector<Flat> flats = options_.image ? onFaces(surface) : onEnds(surface);
         std::erase_if(flats, [&](const Flat& flat) {
             return flat.areaMm2 < UsualHead::kFlatAreaShare * surface.areaMm2;
         });
+        std::ranges::stable_sort(flats, {}, &Flat::isLowerFace);
         std::string finding;
         for (const Flat& flat : flats) {
             finding += (finding.empty() ? "" : "; ") + std::to_string(flat.vertices.size()) +
@@ -320,6 +351,9 @@ private:
                        fixed(flat.areaMm2 / 100, 0) + " cm2) lie " + flat.where;
         }
         HeadNote& note = add("notCutFlat", "not cut flat", n, !flats.empty(), finding);
+        if (options_.image && options_.areHeadLayers && losesHead(n, flats)) {
+            note.warning = "head-cut";
+        }
         for (const Flat& flat : flats) note.pointsMm.push_back(flat.middleMm);
     }
 
@@ -356,14 +390,23 @@ private:
         }
     }
 
+    std::string ofAChild() const {
+        return usual_.isAdult() ? "; of a child give adaptiso-bem --age" : "";
+    }
+
+    /// What limits follow: "adults have " or "of adults' ".
+    std::string usually(bool isUnusual) const {
+        if (isUnusual) return usual_.whose() + " have ";
+        return usual_.isAdult() ? "of adults' " : "usual of " + usual_.whose() + ": ";
+    }
+
     void askVolume() {
         const double cm3 = *surfaces_[innerSkull_].volumeMm3 / 1000;
-        const bool isNoted =
-            cm3 < UsualHead::kLeastInnerSkullCm3 || cm3 > UsualHead::kMostInnerSkullCm3;
+        const bool isNoted = cm3 < usual_.leastInnerSkullCm3 || cm3 > usual_.mostInnerSkullCm3;
         add("innerSkullVolume", "volume of the inner skull", innerSkull_, isNoted,
-            fixed(cm3, 0) + " cm3" + (isNoted ? "; adults have " : ", of adults' ") +
-                fixed(UsualHead::kLeastInnerSkullCm3, 0) + " to " +
-                fixed(UsualHead::kMostInnerSkullCm3, 0) + " cm3");
+            fixed(cm3, 0) + " cm3" + (isNoted ? "; " : ", ") + usually(isNoted) +
+                fixed(usual_.leastInnerSkullCm3, 0) + " to " + fixed(usual_.mostInnerSkullCm3, 0) +
+                " cm3" + (isNoted && cm3 < usual_.leastInnerSkullCm3 ? ofAChild() : ""));
     }
 
     /// The vault is convex. The base is not: its fossae and the foramen magnum are left out.
@@ -433,23 +476,24 @@ private:
         }
         if (upper.empty()) return;
         const bool isSkull = n == innerSkull_;
-        const double least = isSkull ? UsualHead::kLeastSkullMm : UsualHead::kLeastScalpMm;
-        const double most = isSkull ? UsualHead::kMostSkullMm : UsualHead::kMostScalpMm;
+        const double least = isSkull ? usual_.leastSkullMm : usual_.leastScalpMm;
+        const double most = isSkull ? usual_.mostSkullMm : usual_.mostScalpMm;
         const double median = medianOf(upper);
         const bool isThin = median<least, isThick = median> most;
         // single vertices may be off where a vein or a suture is
         const double thick = percentileOf(upper, isSkull ? 0.95 : 0.99);
         const double ratio = thick / percentileOf(upper, 0.05);
         const double mostAnywhere =
-            isSkull ? UsualHead::kMostSkullAnywhereMm : UsualHead::kMostScalpAnywhereMm;
+            isSkull ? usual_.mostSkullAnywhereMm() : usual_.mostScalpAnywhereMm();
         const bool isSomewhereThick = thick > mostAnywhere;
         const bool isUneven = isSkull && ratio > UsualHead::kMostSkullRatio;
         std::string finding = "median " + fixed(median, 1) + " mm over the upper half (" +
                               fixed(gap[thinnest], 1) + " to " + fixed(gap[thickest], 1) + "), ";
-        finding += (isThin || isThick ? "adults have " : "of adults' ") + fixed(least, 0) + " to " +
-                   fixed(most, 0) + " mm";
+        finding +=
+            usually(isThin || isThick) + shortNumber(least) + " to " + shortNumber(most) + " mm";
+        if (isThin) finding += ofAChild();
         if (isSomewhereThick) {
-            finding += "; thicker than " + fixed(mostAnywhere, 0) + " mm on more than " +
+            finding += "; thicker than " + shortNumber(mostAnywhere) + " mm on more than " +
                        (isSkull ? "5" : "1") + " % of it";
         }
         if (isUneven) {
@@ -485,11 +529,33 @@ private:
 
     const std::vector<Asked>& surfaces_;
     const PlausibilityOptions& options_;
+    const UsualHead& usual_;
     std::size_t innerSkull_;
     std::vector<HeadNote> notes_;
 };
 
 }  // namespace
+
+UsualHead::UsualHead(double years) : ageYears(years) {
+    std::size_t n = 1;
+    while (n + 1 < kUsualAges.size() && years > kUsualAges[n].years) ++n;
+    const UsualAge &before = kUsualAges[n - 1], &after = kUsualAges[n];
+    const double share =
+        std::clamp((years - before.years) / (after.years - before.years), 0.0, 1.0);
+    const auto at = [&](double from, double to) { return std::lerp(from, to, share); };
+    leastInnerSkullCm3 = at(before.innerSkullCm3[0], after.innerSkullCm3[0]);
+    mostInnerSkullCm3 = at(before.innerSkullCm3[1], after.innerSkullCm3[1]);
+    leastSkullMm = at(before.skullMm[0], after.skullMm[0]);
+    skullMm = at(before.skullMm[1], after.skullMm[1]);
+    mostSkullMm = at(before.skullMm[2], after.skullMm[2]);
+    leastScalpMm = at(before.scalpMm[0], after.scalpMm[0]);
+    mostScalpMm = at(before.scalpMm[1], after.scalpMm[1]);
+    leastBrainToSkinMm = at(before.brainToSkinMm, after.brainToSkinMm);
+}
+
+std::string UsualHead::whose() const {
+    return isAdult() ? "adults" : "heads of " + shortNumber(ageYears) + " years";
+}
 
 std::vector<HeadNote> judgePlausibility(std::span<const TriangleMesh> surfaces,
                                         const PlausibilityOptions& options) {

@@ -9,6 +9,7 @@
 
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/HeadModel/Plausibility.h"
 
 namespace adaptiso::headmodel {
 namespace {
@@ -98,6 +99,7 @@ struct Search {
     double step;
     const HeadLevels& levels;
     const BoundaryOptions& options;
+    double leastMm;
 
     struct Answer {
         bool reachesSkin = false;
@@ -175,7 +177,7 @@ struct Search {
         while (edge < scalp && profile[edge] < level) ++edge;
         const double before = profile[edge - 1], after = profile[edge];
         const double mm = kRayStepMm * (edge - 1 + (level - before) / (after - before));
-        if (mm < options.minSkullMm || mm > options.maxSkullMm) return std::nullopt;
+        if (mm < leastMm || mm > options.maxSkullMm) return std::nullopt;
         return mm;
     }
 };
@@ -187,7 +189,11 @@ std::vector<Search::Answer> search(const std::vector<Ray>& rays, const std::vect
     const double step = stepMm(grid);
     // a ray asks for the side alone; between corners of both sides no depth is above two voxels
     const std::vector<float> skinDepth = depthMm(skin, grid, DepthBand::within(3 * step));
-    const Search search{t1, skinDepth, faces, grid.size, step, levels, options};
+    // a child's skull may be thinner than the least that is asked for: it is seen all the same
+    const UsualHead usual(options.ageYears);
+    const double leastMm =
+        usual.isAdult() ? options.minSkullMm : std::min(options.minSkullMm, usual.leastSkullMm);
+    const Search search{t1, skinDepth, faces, grid.size, step, levels, options, leastMm};
     std::vector<Search::Answer> answers(rays.size());
     parallelForPieces(std::ssize(rays), 1024, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n) answers[n] = search.along(rays[n]);

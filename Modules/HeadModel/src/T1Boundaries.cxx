@@ -16,6 +16,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/HeadModel/Plausibility.h"
 #include "adaptiso/HeadModel/SourceError.h"
 
 namespace adaptiso {
@@ -26,12 +27,14 @@ namespace {
 
 /// The head on its working grid.
 struct Head {
+    UsualHead usual;
     ImageGeometry grid;
     std::vector<float> t1;
     std::vector<std::uint8_t> faces;
     HeadLevels levels;
     double skinLevel = 0;
     Mask mask;                   ///< closed and filled
+    double besideCm3 = 0;        ///< as bright as tissue, but no part of it
     double cutMm2 = 0;           ///< of its side, where tissue was taken out of the image
     BiasField bias;              ///< as it was taken out of t1
     bool isFramed = false;       ///< parts thinner than 12 mm do not belong to it
@@ -112,19 +115,34 @@ Mask headMask(const Head& head, double level, double closingMm) {
     return filledAtBorder(raw, head.faces, head.grid.size);
 }
 
-/// The skin's isovalue: above the air's noise, and low, since skin is darker than what lies below.
-double skinLevelOf(const Head& head, const Mask& rough, const HeadLevels& levels) {
+double cm3Of(const Mask& mask, const ImageGeometry& grid) {
+    return static_cast<double>(voxelsIn(mask)) * std::pow(stepMm(grid), 3) / 1000;
+}
+
+/// Of frames, rods of fluid, headphones; ghosts and noise come to less.
+constexpr double kLeastBesideCm3 = 15;
+
+/// Finds what lies in the air and is as bright as tissue (head.besideCm3), and the skin's isovalue:
+/// above the air's noise, and low, since skin is darker than what lies below.
+/// \param tissue  the least of tissue
+void findSkinLevel(Head& head, const Mask& rough, double tissue) {
+    const HeadLevels& levels = head.levels;
     double sum = 0, squares = 0, count = 0;
     const Mask around = dilated(rough, head.grid, 5);
+    const auto isAir = [&](std::size_t n) { return around[n] == 0 && head.faces[n] != 0; };
+    Mask beside = above(head.t1, tissue);
+    for (std::size_t n = 0; n < beside.size(); ++n) beside[n] &= isAir(n) ? 1 : 0;
+    head.besideCm3 = cm3Of(beside, head.grid);
+    const bool hasObjects = head.besideCm3 >= kLeastBesideCm3;
     for (std::size_t n = 0; n < head.t1.size(); ++n) {
-        if (around[n] != 0 || head.faces[n] == 0) continue;
+        if (!isAir(n) || (hasObjects && beside[n] != 0)) continue;
         sum += head.t1[n];
         squares += head.t1[n] * head.t1[n];
         ++count;
     }
     const double mean = count > 0 ? sum / count : levels.air;
     const double sigma = count > 0 ? std::sqrt(std::max(squares / count - mean * mean, 0.0)) : 0;
-    return std::max(mean + 4 * sigma, mean + 0.25 * (levels.tissue - mean));
+    head.skinLevel = std::max(mean + 4 * sigma, mean + 0.25 * (levels.tissue - mean));
 }
 
 /// Single samples brighter or darker than anything in a head would move every threshold. NaN
@@ -143,10 +161,6 @@ void clipSpikes(std::vector<float>& values) {
     std::nth_element(low, high, sorted.end());
     const float most = *high;
     for (float& value : values) value = std::isnan(value) ? least : std::clamp(value, least, most);
-}
-
-double cm3Of(const Mask& mask, const ImageGeometry& grid) {
-    return static_cast<double>(voxelsIn(mask)) * std::pow(stepMm(grid), 3) / 1000;
 }
 
 /// How far below the skin anybody asks for.
@@ -172,14 +186,17 @@ constexpr const char* kSkullStripped =
 
 /// Refuses an image whose skull was removed: its largest piece is no larger than a brain, and
 /// nowhere near its surface is the dark of bone. A whole head shows bone on a fifth of the voxels
-/// 6 to 16 mm below its skin (ch2: 31 %), a brain on sulci alone (ch2bet: 3 %).
+/// 6 to 16 mm below its skin (ch2: 31 %), a brain on sulci alone (ch2bet: 3 %). Of a child bone
+/// lies higher.
 void requireSkull(Head& head, const std::vector<float>& below) {
-    constexpr double kLeastMm = 6, kMostMm = kMostBelowSkinMm, kLeastDark = 0.1;
+    constexpr double kLeastDark = 0.1, kBoneMm = 0.75, kBelowBoneMm = 2;  // of the way to the brain
+    const double leastMm = kBoneMm * head.usual.leastBrainToSkinMm;
+    const double mostMm = kBelowBoneMm * head.usual.leastBrainToSkinMm;
     if (cm3Of(head.mask, head.grid) > kMostBrainCm3) return;
     const double bone = head.levels.air + 0.5 * (head.levels.tissue - head.levels.air);
     std::int64_t all = 0, dark = 0;
     for (std::size_t n = 0; n < below.size(); ++n) {
-        if (head.mask[n] == 0 || below[n] < kLeastMm || below[n] > kMostMm) continue;
+        if (head.mask[n] == 0 || below[n] < leastMm || below[n] > mostMm) continue;
         ++all;
         if (head.t1[n] < bone) ++dark;
     }
@@ -294,6 +311,7 @@ Head findHead(const VolumeView& t1, const BrainSources& sources, const BoundaryO
     }
     Head head;
     head.isFramed = isFramed;
+    head.usual = UsualHead(options.ageYears);
     head.grid = workingGrid(image.geometry, first, last, options.stepMm, marginMm(options));
     head.t1 = resampled(image, head.grid, *air);
     head.faces = imageFaces(image.geometry, head.grid);
@@ -302,10 +320,11 @@ Head findHead(const VolumeView& t1, const BrainSources& sources, const BoundaryO
     Mask roughMask = headMask(head, rough, options.closingMm);
     std::vector<float> depth = depthInHeadMm(roughMask, head.grid);
     const std::int64_t middle = deepestVoxel(depth);
-    if (!(depth[middle] >= 40)) {
-        throw InvalidInput("the largest object is " +
-                           shortNumber(2 * std::max(depth[middle], 0.0f)) +
-                           " mm thick; a head is 80 mm or more (a mask? wrong units?)");
+    const double leastMm = head.usual.ageYears < 1 ? 60 : 80;
+    if (!(2 * depth[middle] >= leastMm)) {
+        throw InvalidInput(
+            "the largest object is " + shortNumber(2 * std::max(depth[middle], 0.0f)) +
+            " mm thick; a head is " + shortNumber(leastMm) + " mm or more (a mask? wrong units?)");
     }
     head.levels.air = *air;
     takeBiasOut(head, roughMask, depth, rough);
@@ -316,7 +335,7 @@ Head findHead(const VolumeView& t1, const BrainSources& sources, const BoundaryO
     }
     head.levels.tissue = medianWhere(head.t1, sound);
     freeMemory(sound);
-    head.skinLevel = skinLevelOf(head, roughMask, head.levels);
+    findSkinLevel(head, roughMask, rough);
     freeMemory(roughMask);
     head.mask = headMask(head, head.skinLevel, options.closingMm);
     const std::vector<float> below = belowSkinMm(head);
@@ -338,9 +357,11 @@ double partAtSkin(const Mask& brain, const std::vector<float>& belowSkin, double
 /// Checks that a brain has a possible size and does not touch the skin.
 bool isPlausibleBrain(const Mask& brain, const Head& head, const std::vector<float>& belowSkin) {
     // scalp and skull are thicker together; on a T2 CSF, which touches the skull, is in it
-    const double nearestMm = head.isFluidBright ? 5 : 8;
+    const double nearestMm =
+        std::min(head.usual.leastBrainToSkinMm, head.isFluidBright ? 5.0 : 8.0);
     const double cm3 = cm3Of(brain, head.grid);
-    return cm3 >= 500 && cm3 <= kMostBrainCm3 && partAtSkin(brain, belowSkin, nearestMm) <= 0.001;
+    return cm3 >= std::min(500.0, 0.7 * head.usual.leastInnerSkullCm3) && cm3 <= kMostBrainCm3 &&
+           partAtSkin(brain, belowSkin, nearestMm) <= 0.001;
 }
 
 /// A mask of something else, or in another place. Looser than what is asked of a guess: brain
@@ -349,18 +370,18 @@ void requirePlausibleMask(const Mask& brain, const Head& head,
                           BoundarySource source = BoundarySource::BrainMask) {
     const std::string name =
         source == BoundarySource::Lesion ? "the lesion mask" : "the brain mask";
-    constexpr double kLeastCm3 = 200, kNearestMm = 4, kMostAtSkin = 0.02;
+    constexpr double kLeastCm3 = 200, kMostAtSkin = 0.02;
+    const double nearestMm = head.usual.leastBrainToSkinMm / 2;
     const double cm3 = cm3Of(brain, head.grid);
     if (!(cm3 >= kLeastCm3 && cm3 <= kMostBrainCm3)) {
         throw SourceError(source, name + " holds " + shortNumber(cm3) +
                                       " cm3, must be 200 to 2500 cm3; is it a mask of the brain?");
     }
-    const double part = partAtSkin(brain, belowSkinMm(head), kNearestMm);
+    const double part = partAtSkin(brain, belowSkinMm(head), nearestMm);
     if (part > kMostAtSkin) {
-        throw SourceError(
-            source, name + " lies to " + shortNumber(100 * part) +
-                        " % outside the head or within 4 mm of its skin; is it of this head, in "
-                        "the same space?");
+        throw SourceError(source, name + " lies to " + shortNumber(100 * part) +
+                                      " % outside the head or within " + shortNumber(nearestMm) +
+                                      " mm of its skin; is it of this head, in the same space?");
     }
 }
 
@@ -405,11 +426,12 @@ public:
         : head_(head), tissue_(head.t1.size()), belowSkin_(belowSkinMm(head)) {
         const std::vector<float> depth = depthInHeadMm(head.mask, head.grid);
         const double span = head.levels.tissue - head.levels.air;
+        const double scalpMm = std::min(4.0, head.usual.leastBrainToSkinMm);
         for (std::size_t n = 0; n < tissue_.size(); ++n) {
             const double level = (head.t1[n] - head.levels.air) / span;
             // on a T2 all that is not dark as bone: brain and CSF
             const bool isTissue = head.isFluidBright ? level > 0.4 : level > 0.55 && level < 1.45;
-            tissue_[n] = (isTissue || head.isLesion(n)) && depth[n] > 4 ? 1 : 0;
+            tissue_[n] = (isTissue || head.isLesion(n)) && depth[n] > scalpMm ? 1 : 0;
         }
         tissue_ = withoutHoles(tissue_, head.grid.size);
         middle_ = ballAround(deepestVoxel(depth), head.grid, 20);
@@ -483,7 +505,11 @@ std::string noBrainText(const Head& head) {
                "thresholds; give a T1, or a brain mask";
     }
     if (head.darkShare < kUsuallyDark) return kSkullStripped;
-    return "no brain comes loose by thresholds; give a brain mask";
+    return std::string("no brain comes loose by thresholds") +
+           (head.besideCm3 >= kLeastBesideCm3 ? " (something lies beside the head: a stereotactic "
+                                                "frame, headphones?)"
+                                              : "") +
+           "; give a brain mask";
 }
 
 /// The brain mask of the caller on the head's grid.
@@ -604,8 +630,9 @@ void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning
             {"skull-unseen",
              "the skull does not show on " + shortNumber(std::round(band.unseenMm2 / 100)) +
                  " cm2 in one piece, around (" + text(-p.x) + ", " + text(-p.y) + ", " + text(p.z) +
-                 ") mm RAS: a hole (craniotomy), a lesion at the cortex, or a brain "
-                 "that is wrong there; look at the result"});
+                 ") mm RAS: a hole (craniotomy), a lesion at the cortex, a dura as bright as brain "
+                 "(a contrast "
+                 "agent), or a brain that is wrong there; look at the result"});
     }
 }
 
@@ -647,9 +674,13 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<Volume
     return boundariesFromT1(t1, sources, options);
 }
 
-HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& sources,
-                                const BoundaryOptions& options) {
-    checkOptions(options);
+namespace {
+
+HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
+                         const BoundaryOptions& asked) {
+    checkOptions(asked);
+    BoundaryOptions options = asked;
+    if (options.skullMm == 0) options.skullMm = UsualHead(options.ageYears).skullMm;
     if (!(options.skullMm >= options.minSkullMm && options.skullMm <= options.maxSkullMm)) {
         throw InvalidInput("skullMm is " + shortNumber(options.skullMm) +
                            " mm, must be minSkullMm to maxSkullMm");
@@ -683,6 +714,11 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
         raw.notes.push_back(
             "what is thinner than 12 mm was left aside (a stereotactic frame, a coil?)");
     }
+    if (head.besideCm3 >= kLeastBesideCm3) {
+        raw.notes.push_back(shortNumber(head.besideCm3) +
+                            " cm3 beside the head are as bright as tissue (a stereotactic frame, "
+                            "headphones?): left aside");
+    }
     if (head.cutMm2 > 0) {
         raw.notes.push_back("about " + shortNumber(head.cutMm2 / 100) +
                             " cm2 of the head's side are cut (a face taken out?): no skin is seen "
@@ -715,6 +751,8 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
     SkullBand band =
         findSkullBand(head.t1, head.grid, smoothed(raw.parts[0], head.grid, options.smoothingMm),
                       head.mask, head.faces, head.levels, options);
+    constexpr double kThinMm = 4;  // what makes brain doubtful reaches through such a skull
+    if (UsualHead(options.ageYears).skullMm < kThinMm) band.tissueFraction = 0;
     requireBandInSight(band, isGuess, raw.warnings);
     if (!options.innerSkullOnly) {
         raw.notes.push_back("skull band seen on " + shortNumber(100 * band.seenFraction) +
@@ -730,6 +768,36 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
         limitOuterSkull(raw, options);
     }
     return finished(std::move(raw), options);
+}
+
+/// An infant's head by an infant's limits, where an adult's give none.
+bool isInfant(const VolumeView& t1, const BrainSources& sources, BoundaryOptions options) {
+    constexpr double kYears = 0.25, kMostCm3 = 1550;  // of 2 years
+    options.ageYears = kYears;
+    options.innerSkullOnly = true;
+    options.withBrain = false;
+    try {
+        const HeadBoundaries found = foundInT1(t1, sources, options);
+        const FractionField& solid = found.solids.front();
+        return cm3Of(above(solid.part, kFractionIsovalue), solid.grid) < kMostCm3;
+    } catch (const InvalidInput&) {
+        return false;
+    }
+}
+
+}  // namespace
+
+HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& sources,
+                                const BoundaryOptions& options) {
+    try {
+        return foundInT1(t1, sources, options);
+    } catch (const InvalidInput&) {
+        if (!UsualHead(options.ageYears).isAdult() || !isInfant(t1, sources, options)) throw;
+    }
+    throw InvalidInput(
+        "no adult's brain is found, but an infant's (small, near the skin): give --age in years, "
+        "or "
+        "of an adult another brain mask");
 }
 
 }  // namespace adaptiso

@@ -123,6 +123,7 @@ void askWhatIsUsual(BemModel& model, const BemHooks& hooks) {
     hooks.stage("check", [&] {
         PlausibilityOptions asked;
         asked.image = model.image;
+        asked.usual = UsualHead(model.options.boundaries.ageYears);
         const AffineTransform toRas = lpsToFrame(CoordinateFrame::Ras, {});
         for (HeadNote& note : judgePlausibility(model.meshes, asked)) {
             std::string subject = bemSurfaceName(note.surface, model.meshes.size());

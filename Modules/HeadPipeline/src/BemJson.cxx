@@ -1,5 +1,6 @@
 #include "adaptiso/HeadPipeline/BemJson.h"
 
+#include "adaptiso/HeadModel/Plausibility.h"
 #include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/TetrahedraJson.h"
@@ -179,6 +180,7 @@ Json bemOptionsJson(const BemModelOptions& options) {
               {"minCsfMm", b.minCsfMm}};
     for (const BemNumber& number : bemNumbers()) json[std::string(number.key)] = b.*number.value;
     if (b.stepMm == 0) json["voxelMm"] = nullptr;
+    if (b.skullMm == 0) json["skullMm"] = UsualHead(b.ageYears).skullMm;
     json["conductivity"] = {{"brain", options.conductivities.brain},
                             {"csf", b.withBrain ? Json(options.conductivities.csf) : Json(nullptr)},
                             {"skull", options.conductivities.skull},

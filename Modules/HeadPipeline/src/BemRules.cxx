@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMostGapMm = 20;
 
-constexpr std::array<BemNumber, 10> kNumbers{{
+constexpr std::array<BemNumber, 11> kNumbers{{
     {"sulci", "sulciMm", &BoundaryOptions::sulciMm, 30,
      "Sulci of the brain's own surface narrower than twice this are closed (default: 3)"},
     {"smoothing", "smoothingMm", &BoundaryOptions::smoothingMm, 10,
@@ -30,11 +30,18 @@ constexpr std::array<BemNumber, 10> kNumbers{{
     {"csf", "csfMm", &BoundaryOptions::csfMm, 20,
      "T1: from the brain mask to the inner skull (default: 2)"},
     {"skull", "skullMm", &BoundaryOptions::skullMm, 200,
-     "T1: thickness of the skull where the image does not show it (default: 6)"},
+     "T1: thickness of the skull where the image does not show it (default: 6, below 18 years by "
+     "--age: 2 of newborns, 4 at 5 years)"},
     {"max-skull", "maxSkullMm", &BoundaryOptions::maxSkullMm, 200,
      "Bone farther than this from the inner skull (face, neck) counts as scalp (default: 20)"},
-    {"skull-hu", "skullHu", &BoundaryOptions::skullHu, 0, "CT: isovalue of bone (default: 300)"},
-    {"skin-hu", "skinHu", &BoundaryOptions::skinHu, 0, "CT: isovalue of skin (default: -300)"},
+    {"age", "ageYears", &BoundaryOptions::ageYears, 120,
+     "Age: T1s of infants and children need it; what is unusual is judged by it (0.5: six months; "
+     "default: 18, adults)",
+     "years"},
+    {"skull-hu", "skullHu", &BoundaryOptions::skullHu, 0, "CT: isovalue of bone (default: 300)",
+     "HU"},
+    {"skin-hu", "skinHu", &BoundaryOptions::skinHu, 0, "CT: isovalue of skin (default: -300)",
+     "HU"},
 }};
 
 /// Options that need another.
@@ -57,9 +64,10 @@ Fault faultOfNumbers(const BemModelOptions& options) {
     const BoundaryOptions& head = options.boundaries;
     for (const BemNumber& number : kNumbers) {
         const double value = head.*number.value;
-        if (number.mostMm == 0 || (value >= 0 && value <= number.mostMm)) continue;
+        if (number.most == 0 || (value >= 0 && value <= number.most)) continue;
         return "{" + std::string(number.name) + "} " + formatNumber(value) +
-               ": must be a number from 0 to " + formatNumber(number.mostMm) + ", in mm";
+               ": must be a number from 0 to " + formatNumber(number.most) + ", in " +
+               std::string(number.unit);
     }
     const auto [least, most] = std::minmax({head.minSkullMm, head.minScalpMm, head.minCsfMm});
     if (!(least >= CheckRules::kDefaultMinGapMm) || !(most <= kMostGapMm)) {
@@ -140,7 +148,9 @@ Fault faultOfCombinations(const BemModelOptions& options, const BemRequest& requ
     constexpr double kAirHu = -1000, kSoftTissueHu = 40;
     const bool areHuGood =
         head.skinHu > kAirHu && head.skinHu < head.skullHu && head.skullHu > kSoftTissueHu;
-    const bool isSkullGood = head.skullMm >= head.minSkullMm && head.skullMm <= head.maxSkullMm;
+    const double skullMm =
+        head.skullMm == 0 && !has("skull") ? UsualHead(head.ageYears).skullMm : head.skullMm;
+    const bool isSkullGood = skullMm >= head.minSkullMm && skullMm <= head.maxSkullMm;
     if (!(head.maxSkullMm > head.minSkullMm)) return "{max-skull} must be more than {min-gap}";
     if (has("t1") && !isSkullGood) return "{skull} must lie between {min-gap} and {max-skull}";
     if (has("ct") && !areHuGood) {

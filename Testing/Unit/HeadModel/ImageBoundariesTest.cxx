@@ -202,6 +202,63 @@ TEST(BoundariesFromT1, RecogniseAT2) {
     EXPECT_THROW(boundariesFromT1({t2.data(), head.geometry}, std::nullopt, options), InvalidInput);
 }
 
+TEST(BoundariesFromT1, ModelAnInfantByItsAgeAndNameItWithout) {
+    // 589 cm3, as at three months; bone of 2.5 mm from 2.5 to 5 mm below the skin, the brain at 6
+    const HeadShapes infant = sphericalHead({1, -2, 3}, 52, 54.5, 57);
+    const ImageGeometry geometry = centredGeometry({128, 128, 128}, {1, 1, 1});
+    const std::vector<float> t1 = headT1(infant, 1, geometry);
+    const VolumeView view(t1.data(), geometry);
+    BoundaryOptions options;
+    options.csfMm = 1;
+    try {
+        boundariesFromT1(view, std::nullopt, options);
+        ADD_FAILURE() << "taken for an adult's";
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find("--age"), std::string::npos) << error.what();
+    }
+    options.ageYears = 0.25;
+    const HeadBoundaries found = boundariesFromT1(view, std::nullopt, options);
+    // voxels of 1 mm, two tissues within each
+    EXPECT_LE(surfaceError(found.solids[0], infant.innerSkull).largestMm, 1.5);
+    EXPECT_LE(surfaceError(found.solids[1], infant.outerSkull).largestMm, 1.5);
+    EXPECT_LE(surfaceError(found.solids[2], infant.skin).largestMm, 1);
+    ASSERT_EQ(found.warnings.size(), 1u);
+    EXPECT_EQ(found.warnings.front().code, "guessed-brain");
+}
+
+TEST(BoundariesFromT1, TakeRodsBesideTheHeadForNoNoiseOfTheAir) {
+    // fluid of a stereotactic frame, brighter than the scalp: 4 standard deviations above the air's
+    // mean once lay above the scalp
+    const LargeHead head;
+    const std::vector<float> bare = headT1(head.shapes, 2, head.geometry);
+    std::vector<float> framed = bare;
+    for (std::int64_t n = 0; n < std::ssize(framed); ++n) {
+        const Vec3 p = placeOf(n, head.geometry);
+        for (const double x : {-86.0, 86.0}) {
+            for (const double y : {-86.0, 86.0}) {
+                if (box({x, y, 10}, {6, 6, 70}).depthMm(p) > 0) framed[n] = 400;
+            }
+        }
+    }
+    const HeadBoundaries found =
+        boundariesFromT1({framed.data(), head.geometry}, std::nullopt, {.stepMm = 2});
+    const HeadBoundaries expected =
+        boundariesFromT1({bare.data(), head.geometry}, std::nullopt, {.stepMm = 2});
+    for (std::size_t n = 0; n < 3; ++n) {
+        double off = 0;
+        for (std::size_t v = 0; v < found.solids[n].part.size(); ++v) {
+            off += std::abs(found.solids[n].part[v] - expected.solids[n].part[v]);
+        }
+        EXPECT_LE(off * 8 / 1000, 10) << n;  // cm3 of 1300 and more
+    }
+    EXPECT_TRUE(std::any_of(found.notes.begin(), found.notes.end(), [](const std::string& note) {
+        return note.find("beside the head") != std::string::npos;
+    }));
+    EXPECT_TRUE(std::none_of(
+        expected.notes.begin(), expected.notes.end(),
+        [](const std::string& note) { return note.find("beside") != std::string::npos; }));
+}
+
 TEST(BoundariesFromT1, RefuseAStrippedImageByNameOnAnyBackground) {
     const LargeHead head;
     const std::vector<float> whole = headT1(head.shapes, 2, head.geometry);

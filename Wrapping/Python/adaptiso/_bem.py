@@ -294,7 +294,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         input_coordinates: Union[str, Sequence[Optional[str]], None] = None,
         affine: Any = None, layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
         edge_length: Optional[Tuple[float, float]] = None, meg: bool = False,
-        min_gap: Union[float, Sequence[float]] = (2, 2, 1), csf: float = 2, skull: float = 6,
+        min_gap: Union[float, Sequence[float]] = (2, 2, 1), csf: float = 2,
+        skull: Optional[float] = None, age: float = 18,
         max_skull: float = 20, skull_hu: float = 300, skin_hu: float = -300, closing: float = 10,
         sulci: float = 3, smoothing: float = 1.5, cut_necks: float = 8,
         voxel: Optional[float] = None, conductivity: Sequence[float] = (0.3, 0.006, 0.3),
@@ -360,8 +361,11 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         Least thickness of skull, scalp and, with four layers, CSF, mm, 0.5 to 20; guaranteed.
     csf : float
         T1: from the brain to the inner skull, mm.
-    skull : float
-        T1: thickness of the skull where the image does not show it, mm.
+    skull : float, optional
+        T1: thickness of the skull where the image does not show it, mm. Default: 6, below 18 years by
+        `age` (2 of newborns, 4 at 5 years).
+    age : float
+        Years (0.5: six months). T1s of infants and children need it; what is unusual is judged by it.
     max_skull : float
         Bone farther than this from the inner skull (face, neck) counts as scalp, mm.
     skull_hu, skin_hu : float
@@ -440,7 +444,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         ("head_mask", head_mask), ("pial", pial), ("volume", volume), ("tissues", tissues),
         ("input_coordinates", input_coordinates), ("electrodes", electrodes),
         ("electrodes_in", electrodes_in), ("montage", montage), ("landmarks", landmarks),
-        ("sources", sources), ("source_count", source_count), ("source_grid", source_grid))
+        ("sources", sources), ("skull", skull), ("source_count", source_count), ("source_grid", source_grid))
         if value is not None}
     options: Dict[str, Any] = {
         "layers": count("layers", layers),
@@ -458,7 +462,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         "input_coordinates": ([input_coordinates] if isinstance(input_coordinates, str)
                               else [frame for frame in input_coordinates or () if frame]),
         **{name: number(name, value) for name, value in (
-            ("csf", csf), ("skull", skull), ("max_skull", max_skull), ("skull_hu", skull_hu),
+            ("csf", csf), ("skull", 0 if skull is None else skull), ("age", age),
+            ("max_skull", max_skull), ("skull_hu", skull_hu),
             ("skin_hu", skin_hu), ("closing", closing), ("sulci", sulci), ("smoothing", smoothing),
             ("cut_necks", cut_necks), ("voxel", 0 if voxel is None else voxel))},
         **_electrodes(electrodes, electrodes_in, montage, landmarks),

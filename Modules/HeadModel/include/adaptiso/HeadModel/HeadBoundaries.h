@@ -56,8 +56,10 @@ struct BoundaryOptions {
     /// are not cut: boundariesFromSurfaces() makes them anew as they are.
     double cutNecksMm = 8;
 
-    double csfMm = 2;      ///< T1: from a brain mask out to the inner skull
-    double skullMm = 6;    ///< T1: thickness where the image does not show the skull
+    double csfMm = 2;    ///< T1: from a brain mask out to the inner skull
+    double skullMm = 0;  ///< T1: thickness where it shows no skull; 0: usual at the age (6)
+    /// T1: a child's brain lies nearer to the skin than an adult's, and is smaller (UsualHead).
+    double ageYears = 18;
     double skullHu = 300;  ///< CT: isovalue of bone
     double skinHu = -300;  ///< CT: isovalue of skin
     ProgressCallback progress{};
@@ -93,7 +95,8 @@ struct HeadBoundaries {
 /// Where CSF is brighter than brain (a T2), the guess is all that is bright within the skull,
 /// without csfMm; a warning says so.
 ///
-/// \throws InvalidInput  no head, or no brain, is found; the skull shows on less than 20 % of the
+/// \throws InvalidInput  no head, or no brain, is found (an infant's without its age: by that
+/// name); the skull shows on less than 20 % of the
 ///                       rays (a skull-stripped image); the mask is empty, outside the image, not
 ///                       of a brain's size (200 to 2500 cm3), or not below the skin of this head
 HeadBoundaries boundariesFromT1(const VolumeView& t1, const std::optional<VolumeView>& brainMask,

@@ -12,23 +12,43 @@
 
 namespace adaptiso {
 
-/// Usual ranges of adults' heads and of meshes for boundary elements. Values outside may be right:
+/// Usual ranges of heads of an age and of meshes for boundary elements. Values outside may be right:
 /// they are noted, and nothing fails.
 struct UsualHead {
-    /// Inside of the inner skull, cm3: the means of 49 adults, women 1289 (SD 111), men 1469 (SD
-    /// 102) [Matsumae1996], and three to four standard deviations.
-    static constexpr double kLeastInnerSkullCm3 = 950, kMostInnerSkullCm3 = 1900;
-    /// Median thickness over the upper half, mm. Adults' skulls have 6 at the temples to 10 at the
-    /// forehead on average [Calisan2021]: half of the least to 2 mm above the most. No survey of
-    /// whole scalps is known to us; sphere models take 5 [Naess2017]; wide around these.
-    static constexpr double kLeastSkullMm = 3, kMostSkullMm = 12;
-    static constexpr double kLeastScalpMm = 2, kMostScalpMm = 15;
+    static constexpr double kAdultYears = 18;
+
+    /// \param ageYears  0: newborn; kAdultYears or more: adult
+    explicit UsualHead(double ageYears = kAdultYears);
+
+    double ageYears;
+    /// Inside of the inner skull, cm3. Adults: the means of 49, women 1289 (SD 111), men 1469 (SD
+    /// 102) [Matsumae1996], and three to four standard deviations. Children: the same shares of the
+    /// means [Abbott2000, Sgouros1999]; a newborn has half of what it has at 9 months and a third
+    /// of what it has at 6 years [Kamdar2009].
+    double leastInnerSkullCm3, mostInnerSkullCm3;
+    /// Median thickness over the upper half, mm, and the usual one. Adults' skulls have 6 at the
+    /// temples to 10 at the forehead on average [Calisan2021]: half of the least to 2 mm above the
+    /// most. From birth on they grow to three times; below 4 years most are thinner than 3 mm
+    /// beside the middle [DomenechFernandez2021].
+    double leastSkullMm, skullMm, mostSkullMm;
+    /// The same of the scalp. No survey of whole scalps is known to us; sphere models take 5
+    /// [Naess2017]; wide around these. From brain to skin a newborn has half of an adult's way
+    /// [Beauchamp2011].
+    double leastScalpMm, mostScalpMm;
+    /// From brain to skin, mm, with a voxel's rounding: no guess of the brain comes nearer.
+    double leastBrainToSkinMm;
+
     /// Over the upper half, but for 1 % of the vertices, the scalp is at most this thick (ch2 and
     /// its deformed copies: 14 mm; FreeSurfer's average head has 19 with its skull), and but for
-    /// 5 % the skull [Calisan2021]. Its thick parts (95th percentile) are no more times as thick as
-    /// its thin ones (5th) than this; sound models have 3.
-    static constexpr double kMostScalpAnywhereMm = 20, kMostSkullAnywhereMm = 15;
+    /// 5 % the skull [Calisan2021]; by the most of their medians. Its thick parts (95th percentile)
+    /// are no more times as thick as its thin ones (5th) than this; sound models have 3.
+    double mostScalpAnywhereMm() const { return 20.0 / 15 * mostScalpMm; }
+    double mostSkullAnywhereMm() const { return 15.0 / 12 * mostSkullMm; }
     static constexpr double kMostSkullRatio = 4;
+
+    bool isAdult() const { return ageYears >= kAdultYears; }
+    /// "adults", or "heads of 0.5 years".
+    std::string whose() const;
     /// Depth of the inner skull's upper three fifths below their convex hull, mm. Models of ch2,
     /// its deformed copies and FreeSurfer's average head: at most 4.9.
     static constexpr double kMostDentMm = 8;
@@ -58,14 +78,16 @@ struct HeadNote {
 struct PlausibilityOptions {
     bool areNested = true;      ///< they lie in each other, the innermost first
     bool areHeadLayers = true;  ///< 1, 3 or 4 of them: headSurface()
+    UsualHead usual{};
     /// The image that they were made from, in the surfaces' frame (LPS): how much lies on its
     /// faces. Without: how much lies on one plane across an axis.
     std::optional<ImageGeometry> image;
 };
 
-/// Asks what is usual of a head model: no necks (the innermost, when nested), not cut flat, edges
-/// in proportion (each); volume and dents of the inner skull, thickness of skull and scalp (head
-/// layers, nested), edges against the gap and numbers of vertices (nested neighbours).
+/// Asks what is usual of a head model of options.usual: no necks (the innermost, when nested), not
+/// cut flat, edges in proportion (each); volume and dents of the inner skull, thickness of skull
+/// and scalp (head layers, nested), edges against the gap and numbers of vertices (nested
+/// neighbours).
 ///
 /// Up is +z, as in RAS, LPS and tkRAS. What can't be measured of a surface (it is open, not finite,
 /// not of a head's size) is not asked. Triangles may name points that aren't there.

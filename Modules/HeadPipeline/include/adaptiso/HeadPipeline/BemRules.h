@@ -18,8 +18,9 @@ struct BemNumber {
     std::string_view name;  ///< "max-skull"
     std::string_view key;   ///< "maxSkullMm"
     double BoundaryOptions::*value;
-    double mostMm;  ///< from 0 to this, mm; 0: any number, HU
+    double most;  ///< from 0 to this; 0: any number
     std::string_view help;
+    std::string_view unit = "mm";
 };
 
 /// By the report's order of keys.
