@@ -303,6 +303,7 @@ Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
     }
     std::stable_partition(report.spots.begin(), report.spots.end(),
                           [](const ReportSpot& spot) { return spot.isFailure; });
+    report.valuesAre = "from the other surface";
     report.surfaces.push_back({a, std::move(shown.a), std::move(shown.aToBMm)});
     report.surfaces.push_back({b, std::move(shown.b), std::move(shown.bToAMm)});
     if (run.image) report.volume = ReportVolume{baseName(run.options.volume), run.image->view()};

@@ -130,7 +130,7 @@ class Notes(CheckTest):
         self.assertRegex(done.stdout, r"\n  no narrow neck            ok      inner\.off: no part")
         page = self.path("page.html").read_text()
         self.assertIn("1 thing is unusual of a head model: worth a look.", page)
-        self.assertRegex(page, r'class="worth">.*1 vertex stands out')
+        self.assertRegex(page, r'class="worth">.*edges in proportion, noted')
         self.assertRegex(page, r"▲ noted.*edges in proportion")
         quiet = self.run_check("--nested", *NAMES, "--quiet")
         self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (OK, "", ""))

@@ -203,15 +203,16 @@ Report bemReport(const BemModel& model,
     tellOptions(model, report);
     tellChecks(model, report);
     tellSpots(model, report);
+    report.warnings = linesOf(model.warnings);
     addNotes(model.plausibility, report);
     if (!model.checks.empty()) report.tables.push_back(surfaceTable(model));
     if (!files.empty()) report.tables.push_back(fileTable(files));
-    report.warnings = linesOf(model.warnings);
     report.notes = model.notes;
     if (!model.hasModel() && !model.meshes.empty()) {
         report.notes.push_back(
             "The surfaces shown are those that the model was tried from; none was written.");
     }
+    report.valuesAre = "from the nearest place that the image shows";
     for (std::size_t n = 0; n < model.meshes.size(); ++n) {
         report.surfaces.push_back({bemSurfaceName(n, model.meshes.size()), model.meshes[n]});
         if (n < model.surfaces.size() && model.surfaces[n].seen) {

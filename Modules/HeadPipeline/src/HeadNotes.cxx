@@ -50,13 +50,18 @@ Json notesJson(std::span<const ToldNote> notes) {
 void addNotes(std::span<const ToldNote> notes, Report& report) {
     for (const ToldNote& told : notes) {
         const HeadNote& note = told.note;
+        const bool isWarned = std::ranges::any_of(report.warnings, [&](const std::string& warning) {
+            return warning.find(told.subject + ": " + note.finding) != std::string::npos;
+        });
         report.checks.push_back({told.subject, std::string(note.name),
                                  note.isNoted ? ReportOutcome::Noted : ReportOutcome::Passed,
-                                 note.finding});
+                                 isWarned ? "see the warning" : note.finding});
         if (!note.isNoted) continue;
-        for (std::size_t n = 0; n < note.pointsMm.size(); ++n) {
-            report.spots.push_back(
-                {told.subject + ": " + note.finding, note.pointsMm[n], false, static_cast<int>(n)});
+        const auto places = std::ssize(note.pointsMm);
+        for (std::int64_t n = 0; n < places; ++n) {
+            std::string what = told.subject + ": " + std::string(note.name) + ", noted";
+            if (places > 1) what += " (" + formatCount(n + 1) + " of " + formatCount(places) + ")";
+            report.spots.push_back({what, note.pointsMm[n], false, static_cast<int>(n)});
         }
     }
 }

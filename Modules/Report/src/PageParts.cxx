@@ -205,10 +205,10 @@ std::string scaleHtml(const Scene& scene) {
                  std::to_string(c[2]) + ")";
     }
     std::string html =
-        "<div class=\"scale\" role=\"img\" aria-label=\"Colours of the 3-D view: distance "
-        "from 0 mm, violet, to " +
-        text(most) +
-        " mm, yellow\"><span class=\"unit\">mm</span><span class=\"bar\" "
+        "<div class=\"scale\" role=\"img\" aria-label=\"Colours of the 3-D view: distance " +
+        escaped(withValues->valuesAre) + " from 0 mm, violet, to " + text(most) +
+        " mm, yellow\"><span class=\"unit\">mm " + escaped(withValues->valuesAre) +
+        "</span><span class=\"bar\" "
         "style=\"background: linear-gradient(to top" +
         stops + ")\"></span>";
     for (int tick = 4; tick >= 0; --tick) {

@@ -74,7 +74,10 @@ Scene makeScene(const Report& report) {
         for (const double value : surface.valuesMm) largest = std::max(largest, value);
         scene.surfaces.push_back(std::move(surface));
     }
-    for (SceneSurface& surface : scene.surfaces) surface.largestValueMm = largest;
+    for (SceneSurface& surface : scene.surfaces) {
+        surface.largestValueMm = largest;
+        surface.valuesAre = report.valuesAre;
+    }
     for (const ReportSpot& spot : report.spots) {
         if (isFinite(spot.pointMm)) {
             scene.spots.push_back({spot.what, lpsToRas(spot.pointMm), spot.isFailure});

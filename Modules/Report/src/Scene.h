@@ -132,6 +132,7 @@ struct SceneSurface {
     SceneMesh mesh;
     std::span<const double> valuesMm;  ///< of the vertices, or empty
     double largestValueMm = 0;         ///< of all surfaces: one scale of colours
+    std::string valuesAre{};           ///< as Report has it
     std::int64_t triangles = 0;        ///< of the surface as given
     /// Storage of valuesMm when not in the report.
     std::shared_ptr<const std::vector<double>> ownValues{};

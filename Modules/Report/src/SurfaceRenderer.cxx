@@ -320,18 +320,23 @@ Picture sixSidesPicture(const Scene& scene, std::size_t n) {
     canvas.rectangle({10, 14}, 22, 12, surface.color);
     canvas.text({40, 26}, surface.name, 16, kInk, Anchor::Left, true);
     drawSixSides(canvas, scene, {&surface, 1}, boxOf(surface, scene.box));
-    if (hasBar) drawColorBar(canvas, kSixWidth - kGap + 12, surface.largestValueMm);
-    return {"surface-" + std::to_string(n + 1) + ".png",
-            surface.name + " from six sides",
-            "The surface " + surface.name +
-                " from the front, the left, above, the back, the right and below" +
-                (hasBar ? "; colours tell the distance, from 0 (violet) to " +
-                              fixed(surface.largestValueMm) + " mm (yellow)"
-                        : "") +
-                ". Where its inside shows, it is red.",
-            canvas.png(),
-            canvas.width(),
-            canvas.height()};
+    if (hasBar) {
+        drawColorBar(canvas, kSixWidth - kGap + 12, surface.largestValueMm);
+        canvas.text({canvas.width() - 10.0, 26}, "colours: mm " + surface.valuesAre, 14, kInk,
+                    Anchor::Right);
+    }
+    return {
+        "surface-" + std::to_string(n + 1) + ".png",
+        surface.name + " from six sides",
+        "The surface " + surface.name +
+            " from the front, the left, above, the back, the right and below" +
+            (hasBar ? "; colours tell the distance " + surface.valuesAre + ", from 0 (violet) to " +
+                          fixed(surface.largestValueMm) + " mm (yellow)"
+                    : "") +
+            ". Where its inside shows, it is red.",
+        canvas.png(),
+        canvas.width(),
+        canvas.height()};
 }
 
 Picture regionsPicture(const Scene& scene) {

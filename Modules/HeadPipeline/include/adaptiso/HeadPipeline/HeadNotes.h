@@ -34,7 +34,8 @@ void printNotes(std::ostream& out, std::span<const ToldNote> notes);
 /// List of {name, of, outcome, finding, pointsIn, pointsMm}, points as told.
 Json notesJson(std::span<const ToldNote> notes);
 
-/// Adds what is asked to the checks of a page, and the places of what is noted to its spots.
+/// Adds what is asked to the checks of a page, and the places of what is noted to its spots. What
+/// one of report.warnings says is not said again.
 void addNotes(std::span<const ToldNote> notes, Report& report);
 
 }  // namespace adaptiso

@@ -96,6 +96,7 @@ struct Report {
     std::vector<std::string> warnings;  ///< shown beside the verdict, whatever it is
     std::vector<std::string> notes;     ///< other remarks, and what is not shown: at the end
     std::vector<ReportSurface> surfaces;
+    std::string valuesAre;  ///< their values, behind "mm": "from the other surface"
     /// The surfaces are the regions of one map: they touch, none holds another, and there may be
     /// hundreds. They are drawn together, opaque, and the viewer has a list of them to click.
     bool areRegions = false;
