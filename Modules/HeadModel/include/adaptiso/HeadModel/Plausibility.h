@@ -12,8 +12,8 @@
 
 namespace adaptiso {
 
-/// Usual ranges of heads of an age and of meshes for boundary elements. Values outside may be right:
-/// they are noted, and nothing fails.
+/// Usual ranges of heads of an age and of meshes for boundary elements. Values outside may be
+/// right: they are noted, and nothing fails.
 struct UsualHead {
     static constexpr double kAdultYears = 18;
 
