@@ -1,4 +1,4 @@
-"""Draws the pictures of README.md and Gallery.md from what the pages' own commands write.
+"""Makes the pictures of README.md and Gallery.md: the commands of the page draw those of single surfaces, this script the others.
 
     draw.py BIN             runs the commands with the programs in BIN and writes the pictures anew
     draw.py BIN --check     compares instead: exits with 1 and a line for each picture that differs
@@ -23,8 +23,8 @@ HERE = Path(__file__).resolve().parent
 FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans{}.ttf"
 SAMPLES = 3  # drawn this many times as large, then averaged
 GREY = (125, 133, 144, 255)  # text: readable on white and on black
-BONE, SKIN, BLUE, GREEN = (226, 205, 190), (222, 178, 150), (112, 152, 205), (128, 178, 130)
-LEFT, FRONT, BEHIND = (-75, 18), (-140, 14), (150, 40)  # degrees: around the z axis, above the ground
+BONE, SKIN, BLUE = (226, 205, 190), (222, 178, 150), (112, 152, 205)
+LEFT = (-75, 18)  # degrees: around the z axis, above the ground
 TOLERANCE = 2.0  # mean difference of a byte: fonts and PIL's rounding differ between releases, shapes do not
 TILE = 32  # pixels; a changed digit is ten times that in its tile
 
@@ -48,15 +48,15 @@ def read_vtp(path):
 
 
 def read_surface(path):
-    """(points, normals or None, triangles, colours or None), RAS mm, of a .vtp or a FreeSurfer surface."""
+    """(points, normals or None, triangles), RAS mm, of a .vtp or a FreeSurfer surface."""
     if path.suffix == ".surf":
         body = path.read_bytes().split(b"\n", 2)[2]
         points, triangles = np.frombuffer(body, ">i4", 2)
         return (np.frombuffer(body, ">f4", 3 * points, 8).reshape(-1, 3).astype(float), None,
-                np.frombuffer(body, ">i4", 3 * triangles, 8 + 12 * points).reshape(-1, 3), None)
+                np.frombuffer(body, ">i4", 3 * triangles, 8 + 12 * points).reshape(-1, 3))
     arrays = read_vtp(path)
-    rows = lambda name: arrays[name].reshape(-1, 3).astype(float) if name in arrays else None
-    return rows("Points"), rows("Normals"), arrays["connectivity"].reshape(-1, 3), rows("DistanceColor")
+    return (*(arrays[name].reshape(-1, 3).astype(float) for name in ("Points", "Normals")),
+            arrays["connectivity"].reshape(-1, 3))
 
 
 class Scene:
@@ -74,12 +74,12 @@ class Scene:
 
     def add(self, path, colour, keep=None):
         """\\param keep  of corners (n, 3, 3) in RAS mm: which triangles to draw (default: all)"""
-        points, normals, triangles, own = read_surface(path)
+        points, normals, triangles = read_surface(path)
         corners = points[triangles]
         flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         facing = normals[triangles].mean(1) if normals is not None else flat
         facing /= np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-12)
-        base = own[triangles].mean(1) if own is not None else np.broadcast_to(colour, (len(triangles), 3))
+        base = np.broadcast_to(colour, (len(triangles), 3))
         shown = np.ones(len(triangles), bool) if keep is None else keep(corners)
         if keep is None:
             shown &= flat @ self.axes[:, 2] > 0
@@ -114,10 +114,10 @@ class Scene:
         return image.resize(size, Image.LANCZOS)
 
 
-def whole(scene, size=(420, 360), edges=None):
+def whole(scene):
     low, high = scene.extent()
     margin = 0.02 * (high - low)
-    return scene.draw(size, low - margin, high + margin, edges)
+    return scene.draw((840, 720), low - margin, high + margin)
 
 
 def text(image, at, words, size, bold=False, fill=GREY):
@@ -154,14 +154,6 @@ def cut(corners):
     return corners[:, :, 0].mean(1) < 0
 
 
-def labels(folder, names, view):
-    scene = Scene(view)
-    wheel = np.random.default_rng(7)
-    for path in sorted((folder / names).glob("regions/*.vtp"), key=lambda path: int(path.stem)):
-        scene.add(path, wheel.uniform(90, 240, 3))
-    return scene
-
-
 def head_model(folder):
     scene = Scene((75, 18), layered=True)
     for name, colour in (("outer_skin", SKIN), ("outer_skull", (235, 230, 215)), ("inner_skull", BLUE)):
@@ -169,18 +161,9 @@ def head_model(folder):
     return scene
 
 
-DRAWN = {
-    "brain": lambda folder: whole(Scene(LEFT).add(folder / "brain.vtp", BONE)),
-    "brain-full": lambda folder: whole(Scene(BEHIND).add(folder / "brain-full.vtp", (214, 214, 214))),
-    "brain-half": lambda folder: whole(Scene(LEFT).add(folder / "brain-half.vtp", BONE), edges=(60, 60, 80, 255)),
-    "brain-light": lambda folder: whole(Scene(LEFT).add(folder / "brain-light.vtp", GREEN), edges=(40, 60, 40, 255)),
-    "boxes": lambda folder: whole(Scene(LEFT).add(folder / "boxes.vtp", (190, 170, 215)), edges=(60, 50, 80, 255)),
-    "white-matter": lambda folder: whole(Scene(BEHIND).add(folder / "white-matter.vtp", (235, 232, 225))),
-    "head": lambda folder: whole(Scene(FRONT).add(folder / "head.vtp", SKIN)),
-    "distance": lambda folder: whole(Scene(LEFT).add(folder / "distance.vtp", GREEN)),
-    "labels": lambda folder: whole(labels(folder, "aal", LEFT)),
-    "model": lambda folder: whole(head_model(folder)),
-}
+SEEN = ("brain", "brain-full", "brain-half", "brain-light", "boxes", "white-matter", "head", "distance", "labels")
+DRAWN = {"first-screen": first_screen, "model": lambda folder: whole(head_model(folder)),
+         **{name: lambda folder, name=name: Image.open(folder / name / "view-1.png") for name in SEEN}}
 
 
 def commands(page):
@@ -197,8 +180,10 @@ def main():
         folder = Path(name)
         subprocess.run(["bash", "-euc", commands(HERE.parent / "Gallery.md")], cwd=folder, check=True,
                        env={**os.environ, "PATH": f"{given.bin.resolve()}:/usr/bin:/bin"}, stdout=subprocess.DEVNULL)
-        for name, draw in {"first-screen": first_screen, **DRAWN}.items():
-            path, image = HERE / f"{name}.png", draw(folder).quantize(128, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+        for name, draw in DRAWN.items():
+            path = HERE / f"{name}.png"
+            colours = 32 if name in ("boxes", "brain-half") else 128  # lines everywhere: the file would be large
+            image = draw(folder).quantize(colours, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
             if not given.check:
                 image.save(path, optimize=True)
                 continue
@@ -211,7 +196,7 @@ def main():
                      for x in range(0, off.shape[1], TILE)]
             if not (off.mean() <= TOLERANCE and max(tiles) <= 10 * TOLERANCE):
                 faults.append(f"{path.name}: differs by {off.mean():.1f} of 255 in the mean, {max(tiles):.1f} in a tile")
-    print("\n".join(faults) or f"{len(DRAWN) + 1} pictures are as they are drawn" if given.check else "drawn")
+    print("\n".join(faults) or f"{len(DRAWN)} pictures are as they are drawn" if given.check else "drawn")
     return 1 if faults else 0
 
 
