@@ -1,6 +1,7 @@
 #include "Common/ProgramRun.h"
 
 #include <algorithm>
+#include <iostream>
 #include <iterator>
 #include <system_error>
 
@@ -133,7 +134,7 @@ void ProgramRun::printEnd(std::ostream& out, const AtomicFolder* folder) const {
     std::string line = written.empty() ? "" : "Wrote " + joined(written, ", ");
     if (more > 0) line += " and " + std::to_string(more) + " more";
     if (!toDo.empty()) line += (line.empty() ? "Next: " : "; next: ") + joined(toDo, "; ");
-    out << oneLine(line) << '\n';
+    out << oneLine(line) << std::endl;
 }
 
 void ProgramRun::deliver(const std::function<std::string()>& makeJson,
@@ -143,15 +144,13 @@ void ProgramRun::deliver(const std::function<std::string()>& makeJson,
     const std::string json = common_.wantsJson() ? makeJson() : "";
     if (hasJsonFile(common_)) addOutput(common_.json).writeText(json);
     printNewWarnings();
-    printResults(common_, json, [&](std::ostream& out) {
-        printText(out);
-        printEnd(out, folder);
-    });
+    printResults(common_, json, printText);
     if (folder != nullptr) {
         folder->commit(outputs_);
     } else {
         AtomicOutput::commit(outputs_);
     }
+    if (!common_.wantsJsonOnStdout() && !common_.isQuiet) printEnd(std::cout, folder);
 }
 
 }  // namespace adaptiso

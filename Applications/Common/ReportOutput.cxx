@@ -48,7 +48,7 @@ std::vector<Picture> writePictures(Report report, const std::string& program,
 }
 
 constexpr double kNear = 0.06;
-constexpr int kLeastPixels = 16, kMostPixels = 8192;
+constexpr int kLeastPixels = 16, kMostPixels = 4096;
 
 /// So near that distances between such points do not overflow.
 bool isMeasurable(const Vec3& p) {
@@ -106,7 +106,7 @@ void parseSize(const std::string& text, ViewOptions& view) {
         if (error != std::errc{} || end != digits.data() + digits.size() || value < kLeastPixels ||
             value > kMostPixels) {
             refuseValue("--picture-size", text,
-                        "width and height in pixels, as 2400x1800, each from 16 to 8192");
+                        "width and height in pixels, as 2400x1800, each from 16 to 4096");
         }
         return value;
     };

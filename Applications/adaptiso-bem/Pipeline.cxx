@@ -213,13 +213,17 @@ void writePage(BemRun& run, std::optional<AtomicFolder>& folder) {
 }
 
 /// "adaptiso-check --nested model/inner_skull.surf model/outer_skull.surf ..."
-std::string nestedCommand(const AtomicFolder& folder) {
+std::string checkCommand(const AtomicFolder& folder) {
     std::string surfaces;
+    std::size_t count = 0;
     for (const auto& [name, bytes] : folder.files()) {
-        if (name.ends_with(".surf"))
-            surfaces += " " + shellQuoted((folder.target() / name).string());
+        if (!name.ends_with(".surf")) continue;
+        surfaces += " " + shellQuoted((folder.target() / name).string());
+        ++count;
     }
-    return surfaces.empty() ? "" : "adaptiso-check --nested" + surfaces + " --report check.html";
+    if (count == 0) return "";
+    return "adaptiso-check " + std::string(count == 1 ? "--profile bem" : "--nested") + surfaces +
+           " --report check.html";
 }
 
 /// Writes the folder (only the report and a picture if there is no model) and all other outputs,
@@ -238,7 +242,7 @@ void write(BemRun& run) {
     writePage(run, folder);
     run.settleVerdict();
     const std::string json = jsonReport(run);
-    if (folder && run.model.hasModel()) run.next = nestedCommand(*folder);
+    if (folder && run.model.hasModel()) run.next = checkCommand(*folder);
     if (folder) folder->writeText("report.json", json);
     run.deliver([&] { return json; }, [&](std::ostream& out) { printReport(out, run); },
                 folder ? &*folder : nullptr);

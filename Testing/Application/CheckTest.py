@@ -173,7 +173,8 @@ class Profiles(CheckTest):
         self.assertIsNone(self.surface(shell)["walls"])  # not asked for
         points, triangles = shell
         hole = self.surface((points, triangles[1:]), "--min-wall", 0.6, "--profile", "view")
-        self.assertEqual(outcome(hole, "minWall"), "undecided")
+        self.assertEqual(outcome(hole, "minWall"), "failed")
+        self.assertEqual(hole["failed"], ["minWall"])
 
     def test_min_angle_is_required_where_given(self):
         half = cube((0, 0, 0), (60, 60, 60))

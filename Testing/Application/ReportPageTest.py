@@ -237,8 +237,8 @@ class Files(ReportTest):
 
     def test_wrong_views_are_refused(self):
         for option, value, rule in (("view", "up", "front, back"), ("view", "0,91", "angles"), ("view", "1,2,3", "angles"),
-                                    ("size", "300", "pixels"), ("size", "0x9", "16 to 8192"),
-                                    ("size", "9000x90", "16 to 8192"), ("color", "#12345", "colour"),
+                                    ("size", "300", "pixels"), ("size", "0x9", "16 to 4096"),
+                                    ("size", "9000x90", "16 to 4096"), ("color", "#12345", "colour"),
                                     ("color", "+12345", "colour"), ("background", "red", "transparent"),
                                     ("shading", "round", "smooth, flat or edges")):
             done = self.check("sound.off", "--pictures", "pictures", f"--picture-{option}", value, code=USAGE)

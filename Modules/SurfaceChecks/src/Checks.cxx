@@ -316,8 +316,12 @@ private:
 
     void judgeWalls() {
         if (!facts_.walls) {
-            add(kMinWall, Outcome::Undecided,
-                "only a closed, manifold and outward surface has walls");
+            const std::string finding = "only a closed, manifold and outward surface has walls";
+            if (rules_.minWallMm) {
+                add(kMinWall, false, finding);
+            } else {
+                add(kMinWall, Outcome::Undecided, finding);
+            }
         } else if (!facts_.walls->hasWall()) {
             add(kMinWall, Outcome::Undecided, "no two sides face each other");
         } else {
