@@ -312,6 +312,7 @@ def cases(head, packages=None):
     yield case("frame", "stereotactic frame with localizers", lambda: frame(head))
     yield case("seven-tesla", "7 T-like contrast and coil", lambda: seven_tesla(head))
     yield case("infant-72", "all of 72 % size", lambda: scaled(head, 0.72))
+    yield case("infant-72-told", "the same with --age", lambda: scaled(head, 0.72), options=["--age", 0.25])
     for size, years in ((0.7, 0.2), (0.8, 0.7), (0.9, 2)):
         def young(size=size):
             return infant(head, size, 0.5)

@@ -190,17 +190,22 @@ constexpr const char* kSkullStripped =
 /// lies higher.
 void requireSkull(Head& head, const std::vector<float>& below) {
     constexpr double kLeastDark = 0.1, kBoneMm = 0.75, kBelowBoneMm = 2;  // of the way to the brain
-    const double leastMm = kBoneMm * head.usual.leastBrainToSkinMm;
-    const double mostMm = kBelowBoneMm * head.usual.leastBrainToSkinMm;
     if (cm3Of(head.mask, head.grid) > kMostBrainCm3) return;
     const double bone = head.levels.air + 0.5 * (head.levels.tissue - head.levels.air);
-    std::int64_t all = 0, dark = 0;
-    for (std::size_t n = 0; n < below.size(); ++n) {
-        if (head.mask[n] == 0 || below[n] < leastMm || below[n] > mostMm) continue;
-        ++all;
-        if (head.t1[n] < bone) ++dark;
-    }
-    if (all > 0) head.darkShare = static_cast<double>(dark) / static_cast<double>(all);
+    const auto darkShare = [&](double toBrainMm) {
+        std::int64_t all = 0, dark = 0;
+        for (std::size_t n = 0; n < below.size(); ++n) {
+            if (head.mask[n] == 0 || below[n] < kBoneMm * toBrainMm ||
+                below[n] > kBelowBoneMm * toBrainMm)
+                continue;
+            ++all;
+            if (head.t1[n] < bone) ++dark;
+        }
+        return all > 0 ? static_cast<double>(dark) / static_cast<double>(all) : 1;
+    };
+    // a child's scalp may be as thick as an adult's
+    head.darkShare = std::max(darkShare(UsualHead().leastBrainToSkinMm),
+                              head.usual.isAdult() ? 0 : darkShare(head.usual.leastBrainToSkinMm));
     if (head.darkShare >= kLeastDark) return;
     throw InvalidInput(kSkullStripped);
 }
@@ -691,7 +696,12 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
     tell(options, "brain", 0);
     Mask guess;
     if (isGuess) {
+        const UsualHead own = head.usual;
+        // what keeps an adult's distance from the skin holds less scalp than what keeps a child's
+        head.usual.leastBrainToSkinMm = UsualHead().leastBrainToSkinMm;
         guess = guessedBrain(head);
+        head.usual = own;
+        if (guess.empty() && !own.isAdult()) guess = guessedBrain(head);
         if (guess.empty()) {
             // a stereotactic frame, a coil or a pad that is as bright as tissue
             Head bare = findHead(t1, sources, options, true);
