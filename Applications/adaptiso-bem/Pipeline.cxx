@@ -282,8 +282,7 @@ void noteLongElements(BemModel& model, const TetrahedralMesh& mesh,
             " % of its elements are longer than " + formatShort(kLonger) +
             " times --element-size " + formatShort(askedMm) + ", up to " +
             formatLength(longestMm, 1) +
-            " mm, as the triangles of its surfaces are; tetgen splits these, and more --vertices "
-            "shorten them");
+            " mm, as the triangles of its surfaces are; more --vertices shorten them");
     }
 }
 

@@ -133,10 +133,17 @@ class Model(BemTest):
         self.assertEqual(names, [f"bem.fif:{name}" for name in ("inner_skull", "outer_skull", "outer_skin")])
         self.assertEqual(done.returncode, 0, done.stderr)
         self.fails(USAGE, "--surfaces needs 3 files", "--surfaces", "model/head-dense.fif", "-o", "one")
+        whole = (self.path("model") / "bem.fif").read_bytes()
+        for option in "--json", "--report":
+            done = subprocess.run([CHECK, "--nested", "model/bem.fif", option, "model/bem.fif"], cwd=self.folder,
+                                  text=True, capture_output=True)
+            self.assertIn("is the input, which is never overwritten", done.stderr)
+            self.assertEqual((done.returncode, (self.path("model") / "bem.fif").read_bytes()), (3, whole))
 
     def test_one_surface_for_meg(self):
         arguments = self.labels()
-        self.bem(*arguments[:4], *QUICK, "--meg", "-o", "model")
+        text = self.bem(*arguments[:4], *QUICK, "--meg", "-o", "model").stdout
+        self.assertIn("next: adaptiso-check --profile bem model/inner_skull.surf --report", text)
         self.assertEqual(sorted(os.listdir(self.path("model"))),
                          ["README.md", "inner_skull.surf", "inner_skull.tri", "model.cond",
                           "model.geom", "report.json"])

@@ -597,6 +597,11 @@ std::string percentOf(double share) {
     return shortNumber(std::round(100 * share)) + " %";
 }
 
+/// A brain was found, but not all of it: no sign of an infant.
+class LostBrain : public InvalidInput {
+    using InvalidInput::InvalidInput;
+};
+
 /// Checks the inner skull's place by the tissue around it. Right ones have 2 to 8 % of
 /// rays that begin in tissue (at the temples and the base), brains that lost a part 13 to 60 %.
 void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning>& warnings) {
@@ -608,10 +613,10 @@ void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning
                            " of the rays from the brain outwards: " + kSkullStripped);
     }
     if (isGuess && band.tissueFraction > kMostInTissue) {
-        throw InvalidInput("a part of the brain is lost by thresholds: outside what was found, " +
-                           percentOf(band.tissueFraction) +
-                           " of the rays to the scalp begin in 4 mm of tissue as bright as brain; "
-                           "give a brain mask");
+        throw LostBrain("a part of the brain is lost by thresholds: outside what was found, " +
+                        percentOf(band.tissueFraction) +
+                        " of the rays to the scalp begin in 4 mm of tissue as bright as brain; "
+                        "give a brain mask, or of a child below 5 years --age");
     }
     if (band.tissueFraction > kUsuallyInTissue) {
         warnings.push_back(
@@ -636,8 +641,7 @@ void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning
              "the skull does not show on " + shortNumber(std::round(band.unseenMm2 / 100)) +
                  " cm2 in one piece, around (" + text(-p.x) + ", " + text(-p.y) + ", " + text(p.z) +
                  ") mm RAS: a hole (craniotomy), a lesion at the cortex, a dura as bright as brain "
-                 "(a contrast "
-                 "agent), or a brain that is wrong there; look at the result"});
+                 "(a contrast agent), or a brain that is wrong there; look at the result"});
     }
 }
 
@@ -761,8 +765,13 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
     SkullBand band =
         findSkullBand(head.t1, head.grid, smoothed(raw.parts[0], head.grid, options.smoothingMm),
                       head.mask, head.faces, head.levels, options);
-    constexpr double kThinMm = 4;  // what makes brain doubtful reaches through such a skull
-    if (UsualHead(options.ageYears).skullMm < kThinMm) band.tissueFraction = 0;
+    constexpr double kThinMm = 4;  // rays look through such a skull into the scalp
+    if (UsualHead(options.ageYears).skullMm < kThinMm) {
+        band.tissueFraction = 0;
+        raw.notes.push_back(
+            "at this age the skull is too thin to check that no part of the brain "
+            "is lost: look at the inner skull");
+    }
     requireBandInSight(band, isGuess, raw.warnings);
     if (!options.innerSkullOnly) {
         raw.notes.push_back("skull band seen on " + shortNumber(100 * band.seenFraction) +
@@ -801,13 +810,16 @@ HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& source
                                 const BoundaryOptions& options) {
     try {
         return foundInT1(t1, sources, options);
+    } catch (const SourceError&) {
+        throw;
+    } catch (const LostBrain&) {
+        throw;
     } catch (const InvalidInput&) {
         if (!UsualHead(options.ageYears).isAdult() || !isInfant(t1, sources, options)) throw;
     }
     throw InvalidInput(
         "no adult's brain is found, but an infant's (small, near the skin): give --age in years, "
-        "or "
-        "of an adult another brain mask");
+        "or of an adult another brain mask");
 }
 
 }  // namespace adaptiso

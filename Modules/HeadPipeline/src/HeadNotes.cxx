@@ -50,9 +50,10 @@ Json notesJson(std::span<const ToldNote> notes) {
 void addNotes(std::span<const ToldNote> notes, Report& report) {
     for (const ToldNote& told : notes) {
         const HeadNote& note = told.note;
-        const bool isWarned = std::ranges::any_of(report.warnings, [&](const std::string& warning) {
-            return warning.find(told.subject + ": " + note.finding) != std::string::npos;
-        });
+        const bool isWarned =
+            note.isNoted && std::ranges::any_of(report.warnings, [&](const std::string& warning) {
+                return warning.find(told.subject + ": " + note.finding) != std::string::npos;
+            });
         report.checks.push_back({told.subject, std::string(note.name),
                                  note.isNoted ? ReportOutcome::Noted : ReportOutcome::Passed,
                                  isWarned ? "see the warning" : note.finding});

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 
 #include "Bytes.h"
@@ -423,12 +424,22 @@ std::string nameOf(const FiffSurface& surface) {
     }
 }
 
-/// Names of a file's surfaces, inside out as FIFF's numbers grow.
-std::vector<std::string> namesOf(std::vector<FiffSurface> surfaces) {
-    std::ranges::stable_sort(surfaces, {}, &FiffSurface::id);
+/// Names of surfaces in their order; a name's second one is "outer_skin-2".
+std::vector<std::string> namesOf(const std::vector<FiffSurface>& surfaces) {
     std::vector<std::string> names;
-    for (const FiffSurface& surface : surfaces) names.push_back(nameOf(surface));
+    std::map<std::string, int> count;
+    for (const FiffSurface& surface : surfaces) {
+        const std::string name = nameOf(surface);
+        const int n = ++count[name];
+        names.push_back(n == 1 ? name : name + "-" + std::to_string(n));
+    }
     return names;
+}
+
+/// A file's surfaces, inside out as FIFF's numbers grow.
+std::vector<FiffSurface> insideOut(std::vector<FiffSurface> surfaces) {
+    std::ranges::stable_sort(surfaces, {}, &FiffSurface::id);
+    return surfaces;
 }
 
 }  // namespace
@@ -463,15 +474,16 @@ std::pair<std::filesystem::path, std::string> fiffPart(const std::filesystem::pa
 MeshFile decodeFiff(std::string_view bytes, std::string_view surface,
                     const MeshReadOptions& options) {
     constexpr double kMmPerM = 1000;
-    std::vector<FiffSurface> surfaces = surfacesIn(fiff::decode(bytes));
+    std::vector<FiffSurface> surfaces = insideOut(surfacesIn(fiff::decode(bytes)));
     const std::vector<std::string> names = namesOf(surfaces);
     std::string list;
     for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
     if (!surface.empty()) {
-        std::erase_if(surfaces, [&](const FiffSurface& one) { return nameOf(one) != surface; });
-        if (surfaces.size() != 1) {
+        const auto at = std::ranges::find(names, surface) - names.begin();
+        if (at == std::ssize(names)) {
             unsupported("it holds no surface " + printable(surface) + " but " + list, "name one");
         }
+        surfaces = {surfaces[static_cast<std::size_t>(at)]};
     }
     if (surfaces.size() > 1) {
         unsupported("it holds " + std::to_string(surfaces.size()) + " surfaces",
@@ -487,10 +499,10 @@ MeshFile decodeFiff(std::string_view bytes, std::string_view surface,
 }  // namespace meshio
 
 std::vector<std::filesystem::path> surfacePaths(const std::filesystem::path& path) {
-    if (path.extension() != ".fif") return {path};
+    if (lowerCase(path.extension().string()) != ".fif") return {path};
     std::vector<std::string> names;
     try {
-        names = namesOf(readFiffSurfaces(path));
+        names = namesOf(insideOut(readFiffSurfaces(path)));
     } catch (const FileError&) {
         return {path};  // who reads it says what is wrong
     }

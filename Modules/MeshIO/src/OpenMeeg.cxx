@@ -74,7 +74,10 @@ MeshFile decodeFreeSurferTri(std::string_view bytes) {
         const Vec3 corners = triangles.next();
         Triangle& t = file.mesh.triangles.emplace_back();
         for (int corner = 0; corner < 3; ++corner) {
-            if (!(std::abs(corners[corner]) < kMostCorner)) malformed("a triangle names no point");
+            const double number = corners[corner];
+            if (!(number >= 1 && number < kMostCorner && number == std::floor(number))) {
+                malformed("a triangle names no point");
+            }
             t[corner] = static_cast<VertexId>(corners[corner]) - 1;
         }
     }

@@ -81,6 +81,13 @@ TEST(FiffSurfaces, AreReadAsSurfacesByName) {
     EXPECT_NE(refusalOf([&] { readMesh(path); }).find("outer_skin"), std::string::npos);
     EXPECT_NE(refusalOf([&] { readMesh(path.string() + ":brain"); }).find("outer_skin"),
               std::string::npos);
+    const std::vector<FiffSurface> twice{{4, 0.3, shell(0.09)}, {4, 0.3, shell(0.08)}};
+    writeFiffSurfaces(twice, path);
+    ASSERT_EQ(surfacePaths(path).size(), 2u);
+    EXPECT_TRUE(surfacePaths(path)[1].string().ends_with(".fif:outer_skin-2"));
+    EXPECT_LE(
+        norm(readMesh(surfacePaths(path)[1]).mesh.points[5] - 1000.0 * twice[1].mesh.points[5]),
+        2e-5);
     writeFiffSurfaces(std::span(surfaces).first(1), path);
     EXPECT_EQ(surfacePaths(path).size(), 1u);
     EXPECT_EQ(readMesh(path).mesh.points.size(), surfaces[0].mesh.points.size());
@@ -102,7 +109,15 @@ TEST(FreeSurferTri, IsReadWithAndWithoutNumbersAndNormals) {
         return refusalOf([&] { decodeMesh(text, "head.tri"); });
     };
     EXPECT_NE(refused("99999999999\n1 2 3\n").find("head.tri: "), std::string::npos);
-    for (std::size_t cut = 0; cut + 2 < numbered.size(); ++cut) refused(numbered.substr(0, cut));
+    for (std::size_t cut = 0; cut + 2 < numbered.size(); ++cut) {
+        EXPECT_NE(refused(numbered.substr(0, cut)).find("head.tri: "), std::string::npos) << cut;
+    }
+    for (const char* corner : {"1.9", "-0.5", "0"}) {
+        EXPECT_NE(refused("3\n0 0 0\n1 0 0\n0 1 0\n1\n" + std::string(corner) + " 2 3\n")
+                      .find("names no point"),
+                  std::string::npos)
+            << corner;
+    }
     EXPECT_NE(refused("3\n0 0 0\n1 0 0\n0 1 0\n1\n1 2 7\n").find("point 6"), std::string::npos);
 }
 
