@@ -783,7 +783,7 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
         raw.parts.push_back(std::move(band.outerSkull));
         raw.parts.push_back(partByLevel(head.mask, head.t1, head.skinLevel, head.levels.air,
                                         head.faces, head.grid));
-        head = {};  // a whole head's worth of memory
+        head = Head();  // a whole head's worth of memory
         limitOuterSkull(raw, options);
     }
     return finished(std::move(raw), options);
