@@ -131,7 +131,8 @@ void findSkinLevel(Head& head, const Mask& rough, double tissue) {
     const Mask around = dilated(rough, head.grid, 5);
     const auto isAir = [&](std::size_t n) { return around[n] == 0 && head.faces[n] != 0; };
     Mask beside = above(head.t1, tissue);
-    for (std::size_t n = 0; n < beside.size(); ++n) beside[n] &= isAir(n) ? 1 : 0;
+    for (std::size_t n = 0; n < beside.size(); ++n)
+        if (!isAir(n)) beside[n] = 0;
     head.besideCm3 = cm3Of(beside, head.grid);
     const bool hasObjects = head.besideCm3 >= kLeastBesideCm3;
     for (std::size_t n = 0; n < head.t1.size(); ++n) {
