@@ -494,6 +494,8 @@ class BadInput(BemTest):
             "above 0 and at most 10": ("--t1", "a.nii", "-o", "m", "--conductivity", "0.3,0,0.3"),
             "--max-skull must be more": ("--t1", "a.nii", "-o", "m", "--max-skull", "1"),
             "--skull must lie between": ("--t1", "a.nii", "-o", "m", "--skull", "30"),
+            "the skull's usual thickness at --age does not lie between --min-gap": (
+                "--t1", "a.nii", "-o", "m", "--age", "0", "--min-gap", "3"),
             "--csf -1: must be a number from 0 to 20, in mm": ("--t1", "a.nii", "-o", "m", "--csf", "-1"),
             "--vertices": ("--t1", "a.nii", "-o", "m", "--vertices", "3"),
             "--cut-necks 21: must be a number from 0 to 20, in mm":

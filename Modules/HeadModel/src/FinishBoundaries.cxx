@@ -189,6 +189,9 @@ void checkOptions(const BoundaryOptions& options) {
     requireUpTo("csfMm", options.csfMm, 20);
     requireUpTo("minCsfMm", options.minCsfMm, 20);
     requireUpTo("sulciMm", options.sulciMm, 30);
+    if (!(options.ageYears >= 0 && options.ageYears <= 120)) {
+        throw InvalidInput("ageYears is " + shortNumber(options.ageYears) + ", must be 0 to 120");
+    }
     if (options.withBrain && options.innerSkullOnly) {
         throw InvalidInput("one surface and four were asked for");
     }

@@ -390,11 +390,11 @@ private:
         }
     }
 
-    std::string ofAChild() const {
+    std::string adviceForChildren() const {
         return usual_.isAdult() ? "; of a child give adaptiso-bem --age" : "";
     }
 
-    /// What limits follow: "adults have " or "of adults' ".
+    /// Subject of a limit: "adults have " or "of adults' ".
     std::string usually(bool isUnusual) const {
         if (isUnusual) return usual_.whose() + " have ";
         return usual_.isAdult() ? "of adults' " : "usual of " + usual_.whose() + ": ";
@@ -406,7 +406,7 @@ private:
         add("innerSkullVolume", "volume of the inner skull", innerSkull_, isNoted,
             fixed(cm3, 0) + " cm3" + (isNoted ? "; " : ", ") + usually(isNoted) +
                 fixed(usual_.leastInnerSkullCm3, 0) + " to " + fixed(usual_.mostInnerSkullCm3, 0) +
-                " cm3" + (isNoted && cm3 < usual_.leastInnerSkullCm3 ? ofAChild() : ""));
+                " cm3" + (isNoted && cm3 < usual_.leastInnerSkullCm3 ? adviceForChildren() : ""));
     }
 
     /// The vault is convex. The base is not: its fossae and the foramen magnum are left out.
@@ -491,7 +491,7 @@ private:
                               fixed(gap[thinnest], 1) + " to " + fixed(gap[thickest], 1) + "), ";
         finding +=
             usually(isThin || isThick) + shortNumber(least) + " to " + shortNumber(most) + " mm";
-        if (isThin) finding += ofAChild();
+        if (isThin) finding += adviceForChildren();
         if (isSomewhereThick) {
             finding += "; thicker than " + shortNumber(mostAnywhere) + " mm on more than " +
                        (isSkull ? "5" : "1") + " % of it";

@@ -152,6 +152,10 @@ Fault faultOfCombinations(const BemModelOptions& options, const BemRequest& requ
         head.skullMm == 0 && !has("skull") ? UsualHead(head.ageYears).skullMm : head.skullMm;
     const bool isSkullGood = skullMm >= head.minSkullMm && skullMm <= head.maxSkullMm;
     if (!(head.maxSkullMm > head.minSkullMm)) return "{max-skull} must be more than {min-gap}";
+    if (has("t1") && !isSkullGood && !has("skull") && has("age")) {
+        return "the skull's usual thickness at {age} does not lie between {min-gap} and "
+               "{max-skull}";
+    }
     if (has("t1") && !isSkullGood) return "{skull} must lie between {min-gap} and {max-skull}";
     if (has("ct") && !areHuGood) {
         return "{skin-hu} must lie above air (-1000 HU) and below {skull-hu}, and that above soft "
