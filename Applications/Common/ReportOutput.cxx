@@ -203,8 +203,13 @@ void declareReportOptions(CLI::App& app, ReportOptions& options, const std::stri
     group.text("--report", "OUT.html", options.page,
                "Write a page to look at: the verdict, numbers, pictures and a viewer, in one "
                "HTML file that needs no network");
-    group.text("--pictures", "DIR", options.pictures,
-               "Write the report's pictures alone, as PNG files, into the folder DIR");
+    const auto takeFolder = [&options](const std::string& text) {
+        options.pictures = text;
+        // "pictures/" and "pictures" are one folder, in the same parent
+        if (!options.pictures.has_filename()) options.pictures = options.pictures.parent_path();
+    };
+    group.value("--pictures", "DIR", takeFolder,
+                "Write the report's pictures alone, as PNG files, into the folder DIR");
     declareViewOptions(app, group, options.view);
     group.flag(
         "--deface-report", options.leavesOutFaces,

@@ -196,6 +196,11 @@ class Files(ReportTest):
             self.assertTrue((self.path("pictures") / name).read_bytes().startswith(PNG))
         self.assertFalse(self.path("page.html").exists())
 
+    def test_a_folder_for_pictures_may_end_with_a_slash(self):
+        for _ in ("new", "there"):
+            self.check("sound.off", "--pictures", "slash//", "--quiet")
+            self.assertTrue((self.path("slash") / "surface-1.png").exists())
+
     def view(self, *arguments):
         """(pixels, their box of what is drawn) of the one view of box.off, 10 x 20 x 30 mm."""
         corners = [(x, y, z) for z in (0, 30) for y in (0, 20) for x in (0, 10)]

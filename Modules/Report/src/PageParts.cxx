@@ -90,7 +90,7 @@ std::string tableHtml(const ReportTable& table) {
         html += "<tr>";
         for (std::size_t n = 0; n < row.size(); ++n) {
             html += n == 0 ? "<th scope=\"row\">" + escaped(row[n]) + "</th>"
-                           : cell(table.columns[n], row[n]);
+                           : cell(n < table.columns.size() ? table.columns[n] : "", row[n]);
         }
         html += "</tr>\n";
     }

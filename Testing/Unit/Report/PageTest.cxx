@@ -84,6 +84,13 @@ TEST(Page, TextsAreTextsWhateverTheyHold) {
     EXPECT_TRUE(holds(page, "{{TITLE}}"));  // as it was given, not filled in
 }
 
+TEST(Page, RowsMayBeLongerThanTheHead) {
+    Report report = example();
+    report.tables = {{"A table", {"Name"}, {{"first", "second", "third"}}}};
+    EXPECT_TRUE(holds(htmlPage(report, {}),
+                      "first</th><td data-label=\"\">second</td><td data-label=\"\">third</td>"));
+}
+
 TEST(Page, EscapesWhatHtmlTakesForItself) {
     EXPECT_EQ(escaped("a<b>&\"c\"'"), "a&lt;b&gt;&amp;&quot;c&quot;&#39;");
     EXPECT_EQ(escaped("\xff"), "\uFFFD");
