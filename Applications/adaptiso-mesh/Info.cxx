@@ -12,15 +12,18 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/PreprocessingOptions.h"
 #include "Common/Progress.h"
+#include "Common/ReportOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
+#include "InfoPage.h"
 #include "Run.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/Volume.h"
@@ -48,6 +51,7 @@ struct ImageInfo {
     ValueSummary values;
     std::vector<std::string> refusals;  ///< reasons to refuse a surface
     std::optional<DicomSeries> series;  ///< with --show-phi, of DICOM
+    std::optional<Volume> volume;       ///< for the page
 };
 
 double angleDeg(const Vec3& a, const Vec3& b) {
@@ -166,7 +170,7 @@ ImageInfo gather(const MeshOptions& options, ProgressLine& progress) {
     info.warnings = std::move(read.warnings);
     info.sizeAsRead = read.volume.view().geometry().size;
     if (!options.preprocessing.changesNothing()) progress.show("preprocess");
-    const Preprocessed prepared =
+    Preprocessed prepared =
         preprocessImage(std::move(read.volume), options.preprocessing, options.input);
     addWarnings(info.warnings, prepared.warnings);
     const VolumeView& volume = prepared.volume.view();
@@ -175,6 +179,7 @@ ImageInfo gather(const MeshOptions& options, ProgressLine& progress) {
     progress.show("values");
     info.values = summarizeValues(volume);
     info.refusals = refusalsOf(info.values);
+    if (options.report.isWanted()) info.volume = std::move(prepared.volume);
     if (options.image.showsPhi && info.format == "DICOM") info.series = seriesOf(options);
     return info;
 }
@@ -264,19 +269,29 @@ void printValues(std::ostream& out, const ValueSummary& values, bool isInteger) 
     if (values.histogram) printHistogram(out, *values.histogram, isInteger);
 }
 
-/// Commands to go on with: the options given, and isovalues to try.
-void printNext(std::ostream& out, const MeshOptions& options, const ImageInfo& info) {
-    if (!info.refusals.empty() || info.values.otsu.size() < 2) return;
+/// A command to go on with: the options given but for those of --info, `words` and the input.
+std::string commandWith(const MeshOptions& options, const std::string& words) {
     std::string command = "adaptiso-mesh";
     for (const std::string& option : options.batch.runOptions) {
-        if (option != "--info" && option != "--show-phi") command += " " + shellQuoted(option);
+        const bool isOfInfo = option == "--info" || option == "--show-phi" ||
+                              option == "--deface-report" || option.starts_with("--report=") ||
+                              option.starts_with("--picture");
+        if (!isOfInfo) command += " " + shellQuoted(option);
     }
     const std::string input = baseName(options.input);
-    const std::string end = (input.starts_with('-') ? " -- " : " ") + shellQuoted(input) + "\n";
-    out << "next        " << oneLine(command + " --iso auto --largest --fill-cavities" + end)
-        << "\n            " << oneLine(command);
-    for (const double threshold : info.values.otsu[1]) out << " --iso " << formatShort(threshold);
-    out << " --report try.html" << oneLine(end) << '\n';
+    return oneLine(command + " " + words + (input.starts_with('-') ? " -- " : " ") +
+                   shellQuoted(input));
+}
+
+/// Commands to go on with, of isovalues to try.
+void printNext(std::ostream& out, const MeshOptions& options, const ImageInfo& info) {
+    if (!info.refusals.empty() || info.values.otsu.size() < 2) return;
+    std::string isovalues;
+    for (const double threshold : info.values.otsu[1]) {
+        isovalues += "--iso " + formatShort(threshold) + " ";
+    }
+    out << "next        " << commandWith(options, "--iso auto --largest --fill-cavities")
+        << "\n            " << commandWith(options, isovalues + "--report try.html") << '\n';
 }
 
 Json valuesJson(const ValueSummary& values) {
@@ -373,11 +388,27 @@ std::string infoJson(const MeshOptions& options, const ImageInfo& info, const Ve
     return jsonText(report) + "\n";
 }
 
+ReportResult writePage(const MeshOptions& options, const ImageInfo& info,
+                       const std::vector<Warning>& warnings, std::vector<AtomicOutput>& outputs) {
+    if (!options.report.isWanted()) return {};
+    const auto make = [&] {
+        if (!info.values.histogram) throw InvalidInput("its values leave no isovalue to choose");
+        Report report =
+            infoReport(baseName(options.input), info.format, info.volume->view(), info.values,
+                       [&](const std::string& words) { return commandWith(options, words); });
+        report.warnings = linesOf(warnings);
+        tellStrict(report, options.common, warnings, "");
+        return report;
+    };
+    return writeReport(make, "adaptiso-mesh", options.report, outputs);
+}
+
 }  // namespace
 
 int runInfo(const MeshOptions& options) {
     const ThreadLimit threads(options.common);
     checkReportFile(options.common, options.input);
+    checkReportOutputs(options.report, {&options.input, 1});
     ProgressLine progress(options.common.isQuiet);
     ImageInfo info;
     try {
@@ -398,9 +429,13 @@ int runInfo(const MeshOptions& options) {
     printWarnings("adaptiso-mesh", options.common, warnings);
     Verdict verdict;
     verdict.failStrict(options.common, warnings, "");
+    std::vector<AtomicOutput> outputs;
+    const ReportResult page = writePage(options, info, warnings, outputs);
+    verdict.failReport(page.failure);
     deliverReport(options.common, options.input, infoJson(options, info, verdict),
                   [&](std::ostream& out) { printInfo(out, options, info); });
-    return printVerdict("adaptiso-mesh", verdict, "");
+    AtomicOutput::commit(outputs);
+    return printVerdict("adaptiso-mesh", verdict, baseName(options.input) + " was read");
 }
 
 }  // namespace adaptiso::mesher

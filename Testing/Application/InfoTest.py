@@ -1,12 +1,13 @@
 """--info: what it tells of an image agrees with what is known on paper, and with reading it."""
 
+import html
 import json
 import math
 import re
 import shlex
 
 from DicomTest import SECRETS, Sphere
-from support import (BAD_INPUT, SOURCE, USAGE, ApplicationTest, Image, ball, from_function,
+from support import (BAD_INPUT, CHECK_FAILED, SOURCE, USAGE, ApplicationTest, Image, ball, from_function,
                      main, write_nifti)
 
 
@@ -156,6 +157,84 @@ class Info(ApplicationTest):
         for option in (["--iso", "100"], ["-o", "a.ply"], ["--list-series"]):
             with self.subTest(option):
                 self.assert_fails(USAGE, "--info", "in.nii", "--info", *option)
+
+
+class Page(ApplicationTest):
+    def tables(self, *arguments):
+        """The rows of both tables: isovalues and bounds."""
+        self.mesh(*arguments[:-1], "--info", "--report", "p.html", "--quiet", "--", arguments[-1])
+        text = self.path("p.html").read_text()
+        tables = re.findall(r"<tbody>\n(.*?)</tbody>", text, re.DOTALL)
+        return [[[html.unescape(cell) for cell in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row)]
+                 for row in re.findall(r"<tr>(.*?)</tr>", table)] for table in tables]
+
+    def info_otsu(self, name, *options):
+        return json.loads(self.mesh(*options, "--info", "--json", "-", "--", name).stdout)["values"]["otsu"]
+
+    def test_isovalues_come_with_commands_that_make_their_surfaces(self):
+        image = from_function(20, "h", lambda x, y, z: 0 if x < -5 else 100 if x < 3 else 1000)
+        for name, options in (("its name.nii", ()), ("-x.nii", ("--smooth", "1", "--crop", ":,2:18,:"))):
+            write_nifti(self.path(name), image)
+            otsu = self.info_otsu(name, *options)
+            rows, _ = self.tables(*options, "--pictures", "pics/", name)
+            self.assertTrue(self.path("pics/histogram.png").exists())
+            self.assertEqual(rows[0][0], f"{otsu[0][0]:g}")
+            self.assertGreater(len(rows), 1)
+            for value, _, triangles, command in rows:
+                words = shlex.split(command)
+                self.assertFalse([w for w in words if w.startswith(("--info", "--report", "--pictures"))])
+                made = self.mesh("--method", "mc", "-o", "a.ply", "--json", "-", *words[1:])
+                surface = json.loads(made.stdout)["surfaces"][0]
+                self.assertEqual(f"{surface['isovalue']:g}", value)
+                self.assertEqual(f"{surface['triangles']:,}", triangles)
+                self.mesh(*words[1:])
+
+    def test_estimates_of_triangles_are_near_what_bounds_give(self):
+        # over 100,000 triangles at full resolution: the estimate is from some of the slices
+        write_nifti(self.path("in.nii"), from_function(124, "h", lambda x, y, z: round(
+            100 + 10 * (53 + 2 * (math.sin(x / 3) + math.sin(y / 4) + math.sin(z / 5))
+                        - math.sqrt(x * x + y * y + z * z)))))
+        isovalues, bounds = self.tables("in.nii")
+        value = isovalues[0][0]
+        self.assertGreater(int(bounds[0][1].replace(",", "")), 100_000)
+        for bound, triangles, megabytes in bounds[1:]:
+            estimate = int(triangles.replace(",", ""))
+            surface = self.report("in.nii", "--iso", value, "--largest", "--fill-cavities",
+                                  "--max-error", bound.split()[0], "-o", "a.stl")["surfaces"][0]
+            self.assertLess(max(estimate / surface["triangles"], surface["triangles"] / estimate), 1.5, bound)
+            size = self.path("a.stl").stat().st_size
+            self.assertAlmostEqual(float(megabytes), size / 1e6, delta=0.5 * size / 1e6 + 0.1)
+
+    def test_nothing_identifies_the_patient(self):
+        Sphere().write(self.path("ct"), range(10, 71, 2))
+        self.tables("--show-phi", "ct")
+        text = re.sub(r"<script.*?</script>|base64,[^\"]*", "", self.path("p.html").read_text(),
+                      flags=re.DOTALL)
+        self.assertIn("Isovalues of ct", text)
+        for secret in SECRETS:
+            self.assertNotIn(secret, text)
+
+    def test_there_is_no_page_of_an_image_without_surfaces(self):
+        write_nifti(self.path("flat.nii"), Image((3, 3, 3), "h", [7] * 27))
+        write_nifti(self.path("nan.nii"), Image((3, 3, 3), "f", [math.nan] * 27))
+        self.path("short.nii").write_bytes(self.path("flat.nii").read_bytes()[:-9])
+        write_nifti(self.path("in.nii"), ball())
+        for name, code, page, pattern in (
+                ("flat.nii", CHECK_FAILED, "p.html", "flat.nii was read; the report failed: its values"),
+                ("nan.nii", CHECK_FAILED, "p.html", "no isovalue to choose"),
+                ("short.nii", BAD_INPUT, "p.html", "short.nii"),
+                ("in.nii", BAD_INPUT, "missing/p.html", "missing"),
+                ("in.nii", BAD_INPUT, "in.nii", "never overwritten")):
+            with self.subTest(name, page=page):
+                self.assert_fails(code, pattern, name, "--info", "--quiet",
+                                  "--report", page, "--pictures", "pics")
+                self.assertEqual(self.names(), ["flat.nii", "in.nii", "nan.nii", "short.nii"])
+
+    def test_thin_images_have_a_page_too(self):
+        for size in ((9, 9, 2), (9, 2, 9)):
+            write_nifti(self.path("in.nii"), Image(size, "h", [
+                100 * (n % 9 > 4) for n in range(math.prod(size))]))
+            self.assertEqual(self.tables("in.nii")[0][0][0], "50")
 
 
 class Refused(ApplicationTest):

@@ -91,6 +91,7 @@ std::vector<Picture> drawPictures(const Report& report) {
     const auto add = [&](std::optional<Picture> picture) {
         if (picture) pictures.push_back(std::move(*picture));
     };
+    if (report.histogram) pictures.push_back(histogramPicture(*report.histogram));
     const Scene scene = makeScene(report);
     if (isDrawn(scene)) {
         add(spotPicture(report, scene));

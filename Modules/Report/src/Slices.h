@@ -60,4 +60,7 @@ Picture contourPicture(const Report& report, const Scene& scene, int axis);
 /// Three slices through each of the first spots, with the spot ringed. None without spots.
 std::optional<Picture> spotPicture(const Report& report, const Scene& scene);
 
+/// The picture of Report::histogram.
+Picture histogramPicture(const ReportHistogram& histogram);
+
 }  // namespace adaptiso

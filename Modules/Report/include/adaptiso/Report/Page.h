@@ -20,6 +20,7 @@ struct Picture {
 };
 
 /// Every picture that the report has the data for, in the order of the page:
+///   histogram                            of the image's values
 ///   contours-axial, -coronal, -sagittal  where the surfaces cut slices of the image, as MNE's
 ///                                        plot_bem shows them
 ///   spots                                three slices through each of the first spots

@@ -80,6 +80,13 @@ struct ReportVolume {
     VolumeView view;
 };
 
+/// How often an image's values occur, in bins of equal width.
+struct ReportHistogram {
+    double lower = 0, upper = 0;
+    std::vector<std::int64_t> counts;
+    std::vector<double> marks;  ///< drawn in the colours of the surfaces of the same numbers
+};
+
 /// Content of a page. Texts are plain (they are escaped where needed) and hold
 /// neither folders nor anything that names a patient: that is for the caller to see to.
 struct Report {
@@ -101,6 +108,7 @@ struct Report {
     /// hundreds. They are drawn together, opaque, and the viewer has a list of them to click.
     bool areRegions = false;
     std::optional<ReportVolume> volume;
+    std::optional<ReportHistogram> histogram{};  ///< \pre lower < upper, with bins
     /// Neither page nor pictures show the image and the surfaces where the face may lie: below a
     /// plane that begins 45 mm below the top of an adult's head at the forehead, half way to the
     /// brows, and falls backwards by 42 degrees. Where the top of a head is not found they show
