@@ -45,7 +45,7 @@ class SelfTest(ApplicationTest):
             self.assertIn(row["quantity"], done.stdout)
             self.assertIn(row["phantom"], done.stdout)
         self.assertRegex(done.stdout, r"(?m)^=> passed: All \d+ answers are right\.$")
-        self.assertRegex(done.stdout, r"Name _+ +Date _+ +Signature _+\n$")
+        self.assertRegex(done.stdout, r"Name _+ +Date _+ +Signature _+\nWrote page.html, report.json; next: open page.html in a browser\n$")
         self.assertIn(report["machine"]["processor"], done.stdout)
         page = self.path("page.html").read_text()
         for text in ("Self-test of adaptiso", "Signature", "two bearing balls in CT, mc"):

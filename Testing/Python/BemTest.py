@@ -142,6 +142,7 @@ class Bytes(InFolder):
         for report in reports:
             for key in ("program", "seconds", "peakMemoryMb"):
                 report.pop(key)
+            report["options"].pop("picture", None)  # Python draws none
             for file in report["output"]["files"]:
                 if file["file"] == "README.md":
                     file.pop("bytes")
