@@ -87,9 +87,8 @@ public:
     /// Adds --strict and a failed page to the verdict. An error of the run itself stays first.
     void settleVerdict();
 
-    /// Settles the verdict, prints warnings, results and a line of what was written and what to do
-    /// next, then renames all outputs, and `folder`
-    /// with them, or none.
+    /// Settles the verdict, prints warnings and results, then renames all outputs, and `folder`
+    /// with them, or none. A last line of text names what was written and what to do next.
     /// \param makeJson   called for --json
     /// \param printText  called unless --quiet or --json -
     /// \throws FileError

@@ -212,7 +212,8 @@ void writePage(BemRun& run, std::optional<AtomicFolder>& folder) {
     }
 }
 
-/// "adaptiso-check --nested model/inner_skull.surf model/outer_skull.surf ..."
+/// "adaptiso-check --nested model/inner_skull.surf ..."; of one surface "--profile bem". Empty
+/// without .surf files.
 std::string checkCommand(const AtomicFolder& folder) {
     std::string surfaces;
     std::size_t count = 0;

@@ -83,7 +83,7 @@ Volume slabThrough(const VolumeView& volume, const TriangleMesh& surface, double
     return cropVolume(volume, {{{}, {}, {first, end}}});
 }
 
-/// What bounds cost, as a slab of the volume tells.
+/// Triangles and file sizes by bound, estimated from a slab of the volume.
 ReportTable boundsTable(const VolumeView& volume, const TriangleMesh& full, double isovalue) {
     constexpr double kProbeTriangles = 100'000;
     ReportTable table{"--max-error at isovalue " + formatShort(isovalue) + ", estimated",

@@ -119,7 +119,7 @@ double cm3Of(const Mask& mask, const ImageGeometry& grid) {
     return static_cast<double>(voxelsIn(mask)) * std::pow(stepMm(grid), 3) / 1000;
 }
 
-/// Of frames, rods of fluid, headphones; ghosts and noise come to less.
+/// Least volume of objects beside the head (frames, headphones); ghosts and noise have less.
 constexpr double kLeastBesideCm3 = 15;
 
 /// Finds what lies in the air and is as bright as tissue (head.besideCm3), and the skin's isovalue:

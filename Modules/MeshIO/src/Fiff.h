@@ -35,7 +35,7 @@ inline constexpr std::int32_t kIsotrak = 107, kBem = 310, kBemSurface = 311, kMn
 inline constexpr std::int32_t kFrameHead = 4, kFrameMri = 5, kFrameMriVoxel = 2001,
                               kFrameRas = 2002;
 
-/// What a file begins with: the tag FILE_ID of 20 bytes.
+/// First bytes of a file: the tag FILE_ID of 20 bytes.
 inline constexpr std::string_view kMagic("\0\0\0\x64\0\0\0\x1F\0\0\0\x14", 12);
 
 /// One tag of a file.

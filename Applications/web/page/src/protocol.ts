@@ -22,7 +22,7 @@ export interface OpenRequest {
   isLabels: boolean;
 }
 export interface PreviewRequest { kind: "preview"; isovalue: number }
-/** Of the open image: pairs of neighbouring voxels that a surface passes between; NaN: that differ. */
+/** Counts the pairs of neighbouring voxels of the open image that a surface passes between; with NaN, those that differ. */
 export interface EdgesRequest { kind: "edges"; isovalue: number }
 export interface MeshRequest { kind: "mesh"; file: InputFile; program: string }
 

@@ -111,7 +111,7 @@ export const memoryOf = {
   },
   /** \param faces  between voxels of different labels; thin sheets take up to three times as much */
   labels: (facts: ImageFacts, faces: number): number => kProgramBytes + facts.bytes + 575 * faces,
-  /** Of voxels, and of a grid of 1 mm. */
+  /** Grows with the voxels of the image, and with those of the working grid of 1 mm. */
   head(facts: ImageFacts, isLabels: boolean): number {
     const voxels = voxelsOf(facts), mm3 = facts.geometry.spacingMm.reduce((product, mm) => product * mm, voxels);
     return kProgramBytes + facts.bytes + (isLabels ? 18 * voxels + 31 * mm3 : 8 * voxels + 42 * mm3);
