@@ -124,6 +124,8 @@ TEST_F(ZarrRefusalTest, ChunksThatAreElsewhereAreNamed) {
             expectRefused(name);
         }
     }
+    put(".zarray", metadata2("null"));
+    putChunks("", ".", same);  // the chunk that is named first depends on the threads
     fs::remove(root_ / "0.0.0");
     fs::create_symlink("../.git/annex/objects/a/MD5E-s12--c", root_ / "0.0.0");
     expectRefused("git annex get 0.0.0");
