@@ -154,7 +154,7 @@ Json affineJson(const ImageGeometry& geometry) {
 }
 
 void openImage(const std::string& path, const ReadOptions& options, bool isLabels) {
-    constexpr std::int64_t kMostShown = 16'000'000, kMostPreviewed = 3'000'000;
+    constexpr std::int64_t kMostShown = 16'000'000, kMostPreviewed = 2'000'000;
     image.reset();
     image.emplace(OpenImage{readImage(path, options), {}, {}, {}});
     const VolumeView& view = image->read.volume.view();

@@ -1,7 +1,8 @@
-// Examples/vite with the npm package, as its README says: built, and served while it is written; and NiiVue.
+// Examples/vite with the npm package, as its README says: built, and served while it is written; NiiVue; and no bundler.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { cpSync, existsSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
 import { dirname, join, resolve } from "node:path";
 import { after, before, describe, it } from "node:test";
 import puppeteer from "puppeteer-core";
@@ -85,5 +86,21 @@ describe("the example with Vite", { skip: !kBrowsers.includes("chrome") }, () =>
       assert.equal(points.length, own.points.length);
       assert.ok(points.every((x, n) => Math.abs(x - own.points[n]) < 1e-5));  // NiiVue's are floats
     });
+  });
+
+  it("makes a surface without a bundler", async () => {
+    writeFileSync(join(folder, "plain.html"), `<script type="module">
+      import { mesh } from "./node_modules/adaptiso/index.mjs";
+      const bytes = new Uint8Array(await (await fetch("./balls.nii")).arrayBuffer());
+      window.found = (await mesh({ path: "balls.nii", bytes }, { iso: 120 })).mesh.triangles.length / 3;</script>`);
+    const server = createServer((request, response) => {
+      const file = join(folder, request.url), kind = { html: "text/html", wasm: "application/wasm" }[file.split(".").at(-1)];
+      response.writeHead(existsSync(file) ? 200 : 404, { "content-type": kind ?? "text/javascript" }).end(existsSync(file) ? readFileSync(file) : "");
+    });
+    await new Promise((done) => { server.listen(0, "127.0.0.1", done); });
+    const page = await browser.newPage();
+    await page.goto(`http://127.0.0.1:${server.address().port}/plain.html`);
+    await page.waitForFunction(() => window.found > 100, { timeout: 60_000 });
+    server.close();
   });
 });
