@@ -101,7 +101,7 @@ std::vector<std::filesystem::path> recordFiles(const std::filesystem::path& fold
 enum class RecordFault { None, Missing, Damaged, OfAnotherVersion };
 
 /// Reads a record or returns why it can't be read. Throws nothing, whatever the file holds.
-RecordFault readRecord(const std::filesystem::path& file, RunRecord& record);
+RecordFault readRecord(const std::filesystem::path& path, RunRecord& record);
 
 /// \throws FileError
 void writeRecord(const std::filesystem::path& file, const RunRecord& record);

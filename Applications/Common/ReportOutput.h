@@ -19,7 +19,6 @@
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/Report/Page.h"
 #include "adaptiso/Report/Report.h"  // IWYU pragma: export
-#include "adaptiso/Report/Report.h"
 
 namespace adaptiso {
 

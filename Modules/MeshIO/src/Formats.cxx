@@ -86,7 +86,6 @@ namespace {
 
 using namespace std::string_view_literals;
 using meshio::ByteSource;
-using meshio::loadAs;
 
 bool isNumber(std::string_view word) {
     return !word.empty() && word.find_first_not_of("0123456789+-.eEdD,") == std::string_view::npos;

@@ -79,7 +79,7 @@ public:
     /// report.json.
     /// \throws InvalidInput  they don't keep what is promised
     /// \throws FileError     the folder can't be written, or may not be replaced
-    void write(const std::filesystem::path& folder, const BemFileOptions& options,
+    void write(const std::filesystem::path& target, const BemFileOptions& options,
                bool mayReplace) const;
 
     /// The page of adaptiso-bem's --report.
