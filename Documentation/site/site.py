@@ -76,7 +76,7 @@ def by_header(xml):
     """Changes Doxygen's XML to what Breathe shows header by header: functions of the namespace stand in their
     headers, as structs do; an exception has an entry of its own."""
     trees = {path: ElementTree.ElementTree(ElementTree.fromstring(re.sub(  # 1'000
-        r"(?<=\d) (?:'|&apos;)(?=\d)", "'", path.read_text(encoding="utf-8")))) for path in xml.glob("*.xml")}
+        r"(?<=\d) (?:'|&apos;)(?=\d)", "'", path.read_text(encoding="utf-8")))) for path in sorted(xml.glob("*.xml"))}
     sections = {}  # {header's path: {kind: members}}
     for path, tree in trees.items():
         if not path.name.startswith("namespaceadaptiso"):

@@ -99,8 +99,9 @@ systemMegabytes() {
 
 # runInside NAME COMMAND: runs it in the folder $inside of $root, times it, adds a line to the summary.
 runInside() {
-    local before after began seconds
+    local before after began seconds load
     before=$(systemMegabytes)
+    load=$(cut -d ' ' -f 1 /proc/loadavg)
     began=$SECONDS
     echo "######## $1: $2"
     env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
@@ -108,8 +109,8 @@ runInside() {
 }" </dev/null
     seconds=$((SECONDS - began))
     after=$(systemMegabytes)
-    printf '%-22s %3d min %02d s   %5d MB installed\n' "$1" $((seconds / 60)) $((seconds % 60)) \
-        $((after - before)) >>"$work/summary"
+    printf '%-24s %3d min %02d s   %5d MB installed   load %s before\n' "$1" $((seconds / 60)) $((seconds % 60)) \
+        $((after - before)) "$load" >>"$work/summary"
 }
 
 requireFile() {
@@ -124,18 +125,27 @@ recordBytes() {
     sha256sum <"$1" | sed 's/ .*/  ch2bet at 100/' >>"$work/summary"
 }
 
-# The package $deb on a Debian of its own: installed by apt with what it depends on, and no more, then
-# used as a user does, on a scan that is brought along.
+# The package $deb on a Debian of its own, that which has the package's ITK: installed by apt with what
+# it depends on, and no more, then used as a user does, on a scan that is brought along.
 tryPackage() {
     local scan=/usr/share/mricron/templates/ch2bet.nii.gz
     local scanFrom=$root$scan
     [ -e "$scanFrom" ] || scanFrom=$scan
     root=$work/machine
     inside=/root
-    makeRoot
+    case $(dpkg-deb -f "$deb" Depends) in
+        *libinsighttoolkit5.2*) makeRoot bookworm ;;
+        *libinsighttoolkit5.4*) makeRoot trixie ;;
+        *)
+            echo "try.sh: $deb is for neither Debian 12 nor 13" >&2
+            return 1
+            ;;
+    esac
     cp "$deb" "$root/adaptiso.deb"
     cp "$scanFrom" "$root/root/"
     printf 'package %s, %s MB before\n' "$(basename "$deb")" "$(systemMegabytes)" >>"$work/summary"
+    runInside "package: downloads" "apt-get -q update &&
+        apt-get -q -y install --no-install-recommends --download-only /adaptiso.deb"
     # as the container's recipe does it
     runInside "package: install" \
         "$(sed -n '/^%post/,/^%environment/{/^%/!p}' "$repository/Examples/cohort/adaptiso.def")"
