@@ -199,13 +199,14 @@ std::string MeshData::write(const std::string& path, std::optional<CoordinateFra
     AtomicOutput output(path);
     std::string warning;
     output.write([&](const std::filesystem::path& file) {
-        warning = writeTo(file.string(), frame, std::move(cellArrays));
+        warning = writeTo(file, frame, std::move(cellArrays));
     });
     AtomicOutput::commit({&output, 1});
     return warning;
 }
 
-std::string MeshData::writeTo(const std::string& path, std::optional<CoordinateFrame> frame,
+std::string MeshData::writeTo(const std::filesystem::path& path,
+                              std::optional<CoordinateFrame> frame,
                               std::vector<CellArray> cellArrays) const {
     const MeshFormat& format = findMeshFormat(path);
     MeshWriteOptions options;
@@ -217,8 +218,9 @@ std::string MeshData::writeTo(const std::string& path, std::optional<CoordinateF
     }
     if (!isFrameKnown_) {
         if (frame || format.id == MeshFormatId::FreeSurfer) {
-            throw InvalidInput(
-                path + ": the mesh is of a file that does not say its coordinate frame" + kStateIt);
+            throw InvalidInput(path.string() +
+                               ": the mesh is of a file that does not say its coordinate frame" +
+                               kStateIt);
         }
         options.saysFrame = false;
     }
@@ -252,10 +254,10 @@ std::string MeshData::writeTo(const std::string& path, std::optional<CoordinateF
         RoundingHarm harm =
             settleRounding(lps, format.precision, lpsToFrame(options.frame, options.volume));
         if (!history_) harm.mergedPoints = 0;  // adaptiso-simplify looks at triangles alone
-        if (harm) throw InvalidInput(path + ": " + textOf(harm, format));
+        if (harm) throw InvalidInput(path.string() + ": " + textOf(harm, format));
         if (askedBoundMm_) {
             const auto fault = roundingFault(harm.roundingMm, *askedBoundMm_, format);
-            if (fault) throw InvalidInput(path + ": " + *fault);
+            if (fault) throw InvalidInput(path.string() + ": " + *fault);
             warning = roundingWarning({}, errorBoundMm_.value_or(0) + harm.roundingMm,
                                       *askedBoundMm_, harm.roundingMm, format);
         }

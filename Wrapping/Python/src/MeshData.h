@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -103,7 +104,7 @@ public:
                       std::vector<CellArray> cellArrays = {}) const;
 
     /// The same in place.
-    std::string writeTo(const std::string& path, std::optional<CoordinateFrame> frame,
+    std::string writeTo(const std::filesystem::path& path, std::optional<CoordinateFrame> frame,
                         std::vector<CellArray> cellArrays) const;
 
     /// The mesh in the viewer of report pages, for a notebook. \pre it has triangles
