@@ -68,13 +68,15 @@ def signed_depth(mask):
 
 
 class Case:
-    def __init__(self, name, about, t1, mask=None, affine=None, moved=None, usable=True, options=(), source="--t1", compared=3):
+    def __init__(self, name, about, t1, mask=None, affine=None, moved=None, usable=True, options=(), source="--t1", compared=3,
+                 right=None):
         self.name, self.about, self.t1, self.mask = name, about, t1, mask
         self.affine = affine
         self.moved = moved or (lambda points: points)  # from ch2's place to this head's, RAS mm
         self.usable = usable  # the skull can be seen: a model is expected
         self.options, self.source = list(options), source
         self.compared = compared  # surfaces, from inside out
+        self.right = right  # compared with ch2 modelled this way; None: as the head itself
 
 
 def smooth_noise(shape, sigma, seed):
@@ -138,12 +140,12 @@ def t2_like(head):
     return ndimage.gaussian_filter(t2, 0.5).astype(np.float32)
 
 
-def gadolinium(head):
-    """Dura, sinuses, vessels, mucosa and the scalp's vessels take up contrast."""
+def gadolinium(head, level=1.25, muscle=False):
+    """Dura, sinuses, vessels, mucosa and the scalp's vessels take up contrast; with `muscle` muscles, scalp and marrow too."""
     t1 = head.t1.copy()
     bright = 1.9 * head.brain
     dura = np.abs(head.inner - 0.5) < 1.2
-    t1[dura] = np.maximum(t1[dura], 1.25 * head.brain)
+    t1[dura] = np.maximum(t1[dura], level * head.brain)
     place = head.xyz[0] + 0 * head.inner
     sinus = (np.abs(place) < 5) & (np.abs(head.inner - 3) < 4) & (head.xyz[2] > 0)
     t1[sinus] = bright
@@ -163,7 +165,14 @@ def gadolinium(head):
     t1[vessels] = bright
     face = (head.skin > 5) & (head.outer < -3) & (head.xyz[2] < -25) & (head.xyz[1] > 20)
     t1[face & (smooth_noise(t1.shape, 8, 8) > 0.3)] = bright
-    t1[dura | vessels | sinus] = ndimage.gaussian_filter(t1, 0.6)[dura | vessels | sinus]
+    changed = dura | vessels | sinus
+    if muscle:
+        scalp = (head.outer < -1) & (head.skin > 1)
+        t1[scalp] *= 1.3
+        marrow = (head.inner < -2) & (head.outer > 2) & (smooth_noise(t1.shape, 4, 9) > 0.2)
+        t1[marrow] = np.maximum(t1[marrow], 1.1 * head.brain)
+        changed |= scalp | marrow
+    t1[changed] = ndimage.gaussian_filter(t1, 0.6)[changed]
     return t1
 
 
@@ -308,7 +317,10 @@ def cases(head, packages=None):
     lifted[2, 3] = 46
     yield case("cut-above-eyes", "the image ends at z = -25 mm",
                lambda: (head.t1[:, :, 46:], head.mask[:, :, 46:], head.affine @ lifted))
-    yield case("gadolinium", "contrast in dura, sinuses, vessels, mucosa", lambda: gadolinium(head))
+    # the dura lies on the inner skull of the model with a mask
+    yield case("gadolinium", "contrast in dura, sinuses, vessels, mucosa", lambda: gadolinium(head), right="mask")
+    yield case("gadolinium-faint", "the same, the dura no brighter than brain", lambda: gadolinium(head, 1.05), right="mask")
+    yield case("gadolinium-muscle", "the same, muscles, scalp and marrow too", lambda: gadolinium(head, 1.3, True), right="mask")
     yield case("frame", "stereotactic frame with localizers", lambda: frame(head))
     yield case("seven-tesla", "7 T-like contrast and coil", lambda: seven_tesla(head))
     yield case("infant-72", "all of 72 % size", lambda: scaled(head, 0.72))

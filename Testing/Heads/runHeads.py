@@ -207,7 +207,7 @@ def main():
         for way in ("alone",) + (("mask",) if case.mask is not None and case.source == "--t1" else ()):
             if options.way not in way:
                 continue
-            result = try_case(options.program, options.folder, head, right["mask" if case.source != "--t1" else way], case, way, options.vertices)
+            result = try_case(options.program, options.folder, head, right[case.right or ("mask" if case.source != "--t1" else way)], case, way, options.vertices)
             results.append(result)
             lines.append(row(result))
             print(row(result), flush=True)
