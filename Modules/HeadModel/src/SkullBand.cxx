@@ -100,6 +100,7 @@ struct Search {
     const HeadLevels& levels;
     const BoundaryOptions& options;
     double leastMm;
+    double startMm;  ///< of rays, from the inner skull
 
     struct Answer {
         bool reachesSkin = false;
@@ -108,18 +109,22 @@ struct Search {
         bool endsAtImage = false;     ///< the image ends there, not the head
     };
 
+    /// An inner skull that is a millimetre too wide leaves little of a thin bone outside: what is
+    /// dark begins inside of it, and shows.
+    bool isThinSkull() const { return startMm < 0; }
+
     Answer along(const Ray& ray) const {
         std::vector<double> profile;
         Answer answer;
         const double farMm = options.maxSkullMm + kMostScalpMm;
-        for (double mm = 0; mm <= farMm && !answer.reachesSkin; mm += kRayStepMm) {
+        for (double mm = startMm; mm <= farMm && !answer.reachesSkin; mm += kRayStepMm) {
             const Vec3 at = ray.start + (mm / step) * ray.direction;
             answer.reachesSkin = sampleAt(skinDepth, size, at) <= 0;
             profile.push_back(sampleAt(t1, size, at));
         }
         if (!answer.reachesSkin) return answer;
-        answer.endsAtImage =
-            isBeyondImage(ray, kRayStepMm * static_cast<double>(profile.size() - 1) + 2 * step);
+        answer.endsAtImage = isBeyondImage(
+            ray, startMm + kRayStepMm * static_cast<double>(profile.size() - 1) + 2 * step);
         answer.thicknessMm = thickness(profile);
         answer.startsInTissue = startsInTissue(profile);
         return answer;
@@ -176,9 +181,10 @@ struct Search {
         int edge = dark;
         while (edge < scalp && profile[edge] < level) ++edge;
         const double before = profile[edge - 1], after = profile[edge];
-        const double mm = kRayStepMm * (edge - 1 + (level - before) / (after - before));
-        if (mm < leastMm || mm > options.maxSkullMm) return std::nullopt;
-        return mm;
+        const double mm = startMm + kRayStepMm * (edge - 1 + (level - before) / (after - before));
+        const double shownMm = isThinSkull() ? 0 : leastMm;
+        if (mm < shownMm || mm > options.maxSkullMm) return std::nullopt;
+        return std::max(mm, leastMm);
     }
 };
 
@@ -193,7 +199,8 @@ std::vector<Search::Answer> search(const std::vector<Ray>& rays, const std::vect
     const UsualHead usual(options.ageYears);
     const double leastMm =
         usual.isAdult() ? options.minSkullMm : std::min(options.minSkullMm, usual.leastSkullMm);
-    const Search search{t1, skinDepth, faces, grid.size, step, levels, options, leastMm};
+    const double startMm = usual.isSkullThin() ? -1 : 0;
+    const Search search{t1, skinDepth, faces, grid.size, step, levels, options, leastMm, startMm};
     std::vector<Search::Answer> answers(rays.size());
     parallelForPieces(std::ssize(rays), 1024, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n) answers[n] = search.along(rays[n]);

@@ -827,12 +827,11 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
     SkullBand band =
         findSkullBand(head.t1, head.grid, smoothed(raw.parts[0], head.grid, options.smoothingMm),
                       head.mask, head.faces, head.levels, options);
-    constexpr double kThinMm = 4;  // rays look through such a skull into the scalp
-    if (UsualHead(options.ageYears).skullMm < kThinMm) {
+    if (UsualHead(options.ageYears).isSkullThin()) {  // rays look through it into the scalp
         band.tissueFraction = 0;
         raw.notes.push_back(
-            "at this age the skull is too thin to check that no part of the brain "
-            "is lost: look at the inner skull");
+            "at this age the skull is too thin to show holes or that brain is lost: look at the "
+            "inner skull");
     }
     requireBandInSight(band, isGuess, raw.warnings);
     if (!options.innerSkullOnly) {

@@ -255,6 +255,33 @@ TEST(BoundariesFromT1, ModelAnInfantByItsAgeAndNameItWithout) {
     EXPECT_EQ(found.warnings.front().code, "guessed-brain");
 }
 
+TEST(BoundariesFromT1, SeeAnInfantsSkullOutsideAnInnerSkullThatIsTooWide) {
+    const HeadShapes infant = sphericalHead({1, -2, 3}, 52, 54.5, 57);
+    const ImageGeometry geometry = centredGeometry({128, 128, 128}, {1, 1, 1});
+    const std::vector<float> t1 = headT1(infant, 1, geometry);
+    BoundaryOptions options;
+    options.ageYears = 0.25;
+    options.minScalpMm = 0.5;
+    const auto isUnseen = [&](double brainMm) {
+        std::vector<std::uint8_t> mask;
+        for (const float part : partInside(sphere({1, -2, 3}, brainMm), geometry)) {
+            mask.push_back(part >= 0.5 ? 1 : 0);
+        }
+        const HeadBoundaries found =
+            boundariesFromT1({t1.data(), geometry}, VolumeView(mask.data(), geometry), options);
+        return std::any_of(found.warnings.begin(), found.warnings.end(),
+                           [](const Warning& warning) { return warning.code == "skull-unseen"; });
+    };
+    // with 2 mm of CSF, where there is room, the inner skull has 51.7, 53.7 and 55.2 mm
+    EXPECT_FALSE(isUnseen(49.7));
+    EXPECT_FALSE(isUnseen(51.7));  // 0.8 mm of bone outside
+    try {
+        EXPECT_TRUE(isUnseen(55.2));  // none
+    } catch (const InvalidInput& error) {
+        EXPECT_NE(std::string(error.what()).find("skull shows on"), std::string::npos);
+    }
+}
+
 TEST(BoundariesFromT1, TakeRodsBesideTheHeadForNoNoiseOfTheAir) {
     // fluid of a stereotactic frame, brighter than the scalp: 4 standard deviations above the air's
     // mean once lay above the scalp

@@ -47,6 +47,8 @@ struct UsualHead {
     static constexpr double kMostSkullRatio = 4;
 
     bool isAdult() const { return ageYears >= kAdultYears; }
+    /// Too thin for 1 mm voxels to show it apart from what lies beside it.
+    bool isSkullThin() const { return skullMm < 4; }
     /// "adults", or "heads of 0.5 years".
     std::string whose() const;
     /// Depth of the inner skull's upper three fifths below their convex hull, mm. Models of ch2,
