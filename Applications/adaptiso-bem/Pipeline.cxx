@@ -287,6 +287,36 @@ void noteLongElements(BemModel& model, const TetrahedralMesh& mesh,
     }
 }
 
+/// Gives elements in holes of the segmentation's skull (a craniotomy) to the scalp, with a note:
+/// the surfaces are closed there, as boundary elements need. \pre model.segmented
+void openHoles(BemModel& model, TetrahedralMesh& mesh) {
+    const std::size_t count = model.meshes.size();
+    const std::int32_t skull = tissueNumber(HeadSurface::OuterSkull, count);
+    std::vector<std::size_t> elements;
+    std::vector<Vec3> middlesMm;
+    for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
+        if (mesh.labels[n] != skull) continue;
+        Vec3 sum;
+        for (const VertexId v : mesh.tetrahedra[n]) sum += mesh.points[v];
+        elements.push_back(n);
+        middlesMm.push_back(0.25 * sum);
+    }
+    const std::vector<bool> areOpen =
+        areInHoles(middlesMm, model.meshes[count - 3], *model.skull, *model.segmented);
+    std::int64_t opened = 0;
+    double mm3 = 0;
+    for (std::size_t n = 0; n < elements.size(); ++n) {
+        if (!areOpen[n]) continue;
+        mesh.labels[elements[n]] = tissueNumber(HeadSurface::OuterSkin, count);
+        mm3 += volumeOf(mesh, mesh.tetrahedra[elements[n]]);
+        ++opened;
+    }
+    model.segmented.reset();
+    model.notes.push_back("tetrahedra: " + formatCount(opened) + " of the skull's (" +
+                          formatMeasure(mm3 / 1000) +
+                          " cm3), in holes of the segmentation's skull, are scalp");
+}
+
 /// Fills the model's layers with tetrahedra by the mesher, run as a program (stage "tetrahedra"),
 /// and checks them; a failed check becomes a finding. \pre run.model.hasModel()
 /// \throws FileError  the mesher is missing, fails, or writes an unreadable file
@@ -303,6 +333,10 @@ void makeTetrahedra(BemRun& run, const BemHooks& hooks) {
         noteLongElements(model, made.mesh, regions, run.options.tetrahedra.elementMm);
         for (const TetrahedraCheck& check : judgeTetrahedra(made.report, regions)) {
             addCheck(model, check);
+        }
+        if (model.segmented) {
+            openHoles(model, made.mesh);
+            made.report = checkTetrahedra(made.mesh, regions);
         }
         model.tetrahedra = std::move(made);
     });

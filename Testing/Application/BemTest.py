@@ -196,7 +196,7 @@ class Model(BemTest):
         self.assertLess(report["skull"]["largestHoleMm2"], 1.4 * cap)
         x, y, z = report["skull"]["holePointMm"]  # LPS
         self.assertLess(math.dist((-x, -y, z), (55, 0, 0)), 8)
-        self.assertRegex(warning["text"], r"^a hole of [\d.]+ cm2 .* mm RAS, is closed in the model")
+        self.assertRegex(warning["text"], r"^a hole of [\d.]+ cm2 .* mm RAS, is closed in the surfaces")
         self.assertIn(warning["text"], done.stderr)
         self.assertEqual(self.run_bem(*arguments, "-o", "strict", "--strict").returncode, CHECK_FAILED)
         self.bem(*self.labels(), "-o", "usual")

@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from support import BAD_INPUT, USAGE, main, write_nifti
+from support import BAD_INPUT, USAGE, Image, main, write_nifti
 from bemSupport import BEM, BemTest, head
 
 try:
@@ -23,7 +23,7 @@ RADII = (54, 60, 66, 72)
 FOUR = [word for pair in ("brain=4", "csf=1", "skull=2", "scalp=3") for word in ("--tissue", pair)]
 
 
-def read_msh22(path):
+def read_msh22(path, expected=frozenset((1002, 1003, 1004, 1005))):
     """Points, corners (from 1) and tissues of the tetrahedra; the tissues' surfaces have other numbers."""
     lines = path.read_text().split("\n")
     at = lines.index("$Nodes")
@@ -32,7 +32,7 @@ def read_msh22(path):
     at = lines.index("$Elements")
     rows = [list(map(int, line.split())) for line in lines[at + 2:at + 2 + int(lines[at + 1])]]
     surfaces = {row[3] for row in rows if row[1] == 2}
-    assert surfaces == {1002, 1003, 1004, 1005}, surfaces  # as SimNIBS looks for them
+    assert surfaces == expected, surfaces  # as SimNIBS looks for them
     rows = [row for row in rows if row[1] == 4]
     return points, [row[5:] for row in rows], [row[3] for row in rows]
 
@@ -61,6 +61,36 @@ class Tetrahedra(BemTest):
                     within = ball
                 self.assertGreater(report["tetrahedra"]["dihedralDeg"]["minimum"], 1)
                 self.assertTrue(all(check["passed"] for check in report["checks"]))
+
+    def test_a_hole_in_the_skull_stays_open(self):
+        """A craniotomy: the surfaces close it, its tetrahedra are scalp. Beside it the skull is whole."""
+        radii, hole = (60, 68, 76), 30
+        image = head(radii=radii)
+        n, step = image.size[0], image.spacing[0]
+        samples = bytearray(image.samples)
+        for at, label in enumerate(samples):
+            x, y, z = (step * (v - (n - 1) / 2) for v in (at % n, at // n % n, at // n // n))
+            if label == 2 and x > 0 and y * y + z * z < hole * hole:
+                samples[at] = 3
+        write_nifti(self.path("holed.nii"), Image(image.size, "B", bytes(samples), image.spacing, image.origin))
+        for mesher in MESHERS:
+            self.bem("--labels", "holed.nii", "--tissue", "brain=1", "--tissue", "skull=2", "--tissue", "scalp=3", "--voxel", "3",
+                     "--vertices", "642", "--closing", "4", "--tetrahedra", mesher, "--element-size", "6", "--force", "-o", "holed")
+            note, = [note for note in self.report("holed")["notes"] if "are scalp" in note]
+            self.assertRegex(note, r"^tetrahedra: [\d,]+ of the skull's \([\d.]+ cm3\), in holes")
+            points, corners, tissues = read_msh22(self.path("holed") / "head.msh", {1002, 1004, 1005})
+            for corner, tissue in zip(corners, tissues):
+                x, y, z = (sum(points[v - 1][a] for v in corner) / 4 for a in range(3))
+                beside = math.hypot(y, z)
+                # voxels of 4 mm, elements of 6 mm on both sides of the rim
+                if x > 0 and beside < hole - 7:
+                    self.assertNotEqual(tissue, 4, (mesher, x, y, z))
+                elif beside > hole + 7 and 62 < math.dist((x, y, z), (0, 0, 0)) < 66:
+                    self.assertEqual(tissue, 4, (mesher, x, y, z))
+            layers = {l["tissue"]: l["volumeMm3"] for l in self.report("holed")["tetrahedra"]["layers"]}
+            cap = (1 - math.cos(math.asin(hole / 64))) / 2  # of a sphere
+            shell = 4 / 3 * math.pi * (68 ** 3 - 60 ** 3)
+            self.assertAlmostEqual(layers["skull"] / ((1 - cap) * shell), 1, delta=0.06)
 
     def test_a_size_that_the_surfaces_do_not_allow_is_noted(self):
         # 200 vertices on a sphere of 60 mm: edges of 16 mm

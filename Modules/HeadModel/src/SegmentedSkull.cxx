@@ -107,9 +107,9 @@ double quantile(std::vector<std::pair<double, double>> values, double share) {
     return values.back().first;
 }
 
-/// The largest connected part of `isAbsent` that does not hold the lowest of its vertices.
-void findHole(const TriangleMesh& inner, const std::vector<Place>& places,
-              SkullComparison& comparison) {
+/// The connected parts without skull that do not hold the lowest of all vertices.
+void findHoles(const TriangleMesh& inner, const std::vector<Place>& places,
+               SkullComparison& comparison) {
     DisjointSets sets(std::ssize(places));
     for (const Triangle& t : inner.triangles) {
         for (int c = 0; c < 3; ++c) {
@@ -130,6 +130,10 @@ void findHole(const TriangleMesh& inner, const std::vector<Place>& places,
         }
         areaMm2[root[v]] += places[v].areaMm2;
         middle[root[v]] += places[v].areaMm2 * inner.points[v];
+    }
+    for (std::size_t v = 0; v < places.size(); ++v) {
+        const bool isInPart = !places[v].hasSkull() && areaMm2[root[v]] > SkullComparison::kHoleMm2;
+        if (isInPart) comparison.holeVertices.push_back(static_cast<VertexId>(v));
     }
     const auto largest = std::max_element(areaMm2.begin(), areaMm2.end());
     if (largest == areaMm2.end() || !(*largest > 0)) return;
@@ -168,8 +172,21 @@ SkullComparison compareSkull(const TriangleMesh& innerSkull, const TriangleMesh&
         comparison.medianMm = quantile(std::move(segmented), 0.5);
         comparison.modelMedianMm = quantile(std::move(model), 0.5);
     }
-    findHole(innerSkull, places, comparison);
+    findHoles(innerSkull, places, comparison);
     return comparison;
+}
+
+std::vector<bool> areInHoles(const std::vector<Vec3>& placesMm, const TriangleMesh& innerSkull,
+                             const SkullComparison& comparison, const SegmentedHead& head) {
+    std::vector<bool> isHoleVertex(innerSkull.points.size()), areIn(placesMm.size());
+    for (const VertexId v : comparison.holeVertices) isHoleVertex[v] = true;
+    const AabbTree tree(innerSkull);
+    for (std::size_t n = 0; n < placesMm.size(); ++n) {
+        const Triangle& t = innerSkull.triangles[tree.closestPoint(placesMm[n]).triangle];
+        areIn[n] = std::any_of(t.begin(), t.end(), [&](VertexId v) { return isHoleVertex[v]; }) &&
+                   skullAt(head, placesMm[n]) < kFractionIsovalue;
+    }
+    return areIn;
 }
 
 }  // namespace adaptiso

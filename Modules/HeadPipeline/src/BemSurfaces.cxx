@@ -215,8 +215,8 @@ void compareWithSegmentation(BemModel& model) {
                               (percent < 0 ? "" : "+") + formatFixed(percent, 1) + " %)");
     }
     model.skull = compareSkull(model.meshes[first], model.meshes[first + 1], *model.segmented);
-    model.segmented.reset();  // a head's worth of memory
     const SkullComparison& skull = *model.skull;
+    if (skull.holeVertices.empty()) model.segmented.reset();  // a head's worth of memory
     const auto share = [&](double mm2) {
         return cm2Text(mm2) + " (" + formatFixed(100 * mm2 / skull.areaMm2, 1) + " %)";
     };
@@ -235,12 +235,12 @@ void compareWithSegmentation(BemModel& model) {
                  " (median " + formatLength(skull.medianMm, 1) + " mm, " +
                  formatLength(skull.modelMedianMm, 1) + " mm in the model)"});
     }
-    constexpr double kHoleMm2 = 500;  // orbits and canals have less
-    if (skull.largestHoleMm2 > kHoleMm2) {
-        model.warnings.push_back({"skull-closed", "a hole of " + share(skull.largestHoleMm2) +
-                                                      " in the segmentation's skull, around " +
-                                                      rasText(*skull.holeMm) +
-                                                      ", is closed in the model"});
+    if (!skull.holeVertices.empty()) {
+        model.warnings.push_back(
+            {"skull-closed", "a hole of " + share(skull.largestHoleMm2) +
+                                 " in the segmentation's skull, around " + rasText(*skull.holeMm) +
+                                 ", is closed in the surfaces: boundary elements need a "
+                                 "closed shell; --tetrahedra leaves it open"});
     }
 }
 

@@ -33,6 +33,11 @@ struct SkullComparison {
     double thickenedMm2 = 0;  ///< where it is thicker than the segmentation's by thickerMm or more
     double mostThickenedMm = 0;       ///< by how much at most
     std::optional<Vec3> thickenedMm;  ///< where, LPS
+    /// Vertices of the inner skull in holes of more than kHoleMm2: connected parts without skull in
+    /// the segmentation, but for the lowest one.
+    std::vector<VertexId> holeVertices;
+
+    static constexpr double kHoleMm2 = 500;  ///< orbits and canals have less
 };
 
 /// Compares along the shortest way from each vertex of the inner skull to the outer skull, and 3 mm
@@ -43,5 +48,11 @@ struct SkullComparison {
 /// \pre they have triangles
 SkullComparison compareSkull(const TriangleMesh& innerSkull, const TriangleMesh& outerSkull,
                              const SegmentedHead& head);
+
+/// Of places in the model's skull, those in its holes: the nearest triangle of the inner skull has
+/// a vertex in one, and the segmentation has no skull there.
+/// \pre comparison is compareSkull(innerSkull, ..., head)
+std::vector<bool> areInHoles(const std::vector<Vec3>& placesMm, const TriangleMesh& innerSkull,
+                             const SkullComparison& comparison, const SegmentedHead& head);
 
 }  // namespace adaptiso
