@@ -12,6 +12,7 @@
 #include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Core/Volume.h"
 
 namespace adaptiso::meshio {
 
@@ -30,6 +31,10 @@ namespace adaptiso::meshio {
 /// asked before anything of that size is allocated or looped over.
 void requireRoom(std::string_view what, std::int64_t count, std::int64_t bytesEach,
                  std::size_t bytesLeft);
+
+inline bool isReal(PixelType type) {
+    return type == PixelType::Float32 || type == PixelType::Float64;
+}
 
 template <class T>
 T loadAs(const char* bytes, std::endian order) {
@@ -53,6 +58,12 @@ public:
     template <class T>
     T number(std::endian order) {
         return loadAs<T>(take(sizeof(T)).data(), order);
+    }
+    /// The next number, stored as `type`.
+    template <class T>
+    T number(PixelType type, std::endian order) {
+        return withPixelType(
+            type, [&]<class Stored>(Stored) { return static_cast<T>(number<Stored>(order)); });
     }
     /// Up to the next line feed, carriage return, or pair of both, without these.
     std::string_view line();

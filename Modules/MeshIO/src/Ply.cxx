@@ -24,14 +24,13 @@ namespace {
 
 constexpr std::int64_t kMostRows = std::int64_t{1} << 40;  // beyond what memory holds
 
-enum class Scalar { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
 enum class Encoding { Text, LittleEndian, BigEndian };
 
 struct Property {
     std::string name;
-    Scalar type{};
+    PixelType type{};
     bool isList = false;
-    Scalar countType{};
+    PixelType countType{};
 };
 
 struct Element {
@@ -46,42 +45,24 @@ struct Header {
     FrameMarks marks;
 };
 
-Scalar parseScalar(std::string_view name) {
+PixelType parseScalar(std::string_view name) {
     struct Entry {
         std::string_view name, otherName;
-        Scalar type;
+        PixelType type;
     };
-    static constexpr std::array<Entry, 8> kEntries{{{"char", "int8", Scalar::Int8},
-                                                    {"uchar", "uint8", Scalar::UInt8},
-                                                    {"short", "int16", Scalar::Int16},
-                                                    {"ushort", "uint16", Scalar::UInt16},
-                                                    {"int", "int32", Scalar::Int32},
-                                                    {"uint", "uint32", Scalar::UInt32},
-                                                    {"float", "float32", Scalar::Float32},
-                                                    {"double", "float64", Scalar::Float64}}};
+    static constexpr std::array<Entry, 8> kEntries{{{"char", "int8", PixelType::Int8},
+                                                    {"uchar", "uint8", PixelType::UInt8},
+                                                    {"short", "int16", PixelType::Int16},
+                                                    {"ushort", "uint16", PixelType::UInt16},
+                                                    {"int", "int32", PixelType::Int32},
+                                                    {"uint", "uint32", PixelType::UInt32},
+                                                    {"float", "float32", PixelType::Float32},
+                                                    {"double", "float64", PixelType::Float64}}};
     for (const Entry& entry : kEntries) {
         if (name == entry.name || name == entry.otherName) return entry.type;
     }
     unsupported("a property has the unknown type " + printable(name),
                 "save it again with int, float or double");
-}
-
-std::int64_t bytesOf(Scalar type) {
-    switch (type) {
-        case Scalar::Int8:
-        case Scalar::UInt8:
-            return 1;
-        case Scalar::Int16:
-        case Scalar::UInt16:
-            return 2;
-        case Scalar::Int32:
-        case Scalar::UInt32:
-        case Scalar::Float32:
-            return 4;
-        case Scalar::Float64:
-            return 8;
-    }
-    return 0;
 }
 
 Encoding parseEncoding(std::string_view word) {
@@ -166,20 +147,13 @@ public:
         isFirst_ = false;
     }
 
-    double real(Scalar type) {
-        if (encoding_ == Encoding::Text) return source_.realWord("a value");
-        switch (type) {
-            case Scalar::Float32:
-                return source_.number<float>(order_);
-            case Scalar::Float64:
-                return source_.number<double>(order_);
-            default:
-                return static_cast<double>(binaryInteger(type));
-        }
+    double real(PixelType type) {
+        return encoding_ == Encoding::Text ? source_.realWord("a value")
+                                           : source_.number<double>(type, order_);
     }
 
-    std::int64_t integer(Scalar type) {
-        if (type == Scalar::Float32 || type == Scalar::Float64) {
+    std::int64_t integer(PixelType type) {
+        if (isReal(type)) {
             const double value = real(type);
             constexpr double kExact = 9007199254740992;  // 2^53
             if (!(std::abs(value) <= kExact) || value != std::floor(value)) {
@@ -188,12 +162,12 @@ public:
             return static_cast<std::int64_t>(value);
         }
         return encoding_ == Encoding::Text ? source_.integerWord("an index or a count")
-                                           : binaryInteger(type);
+                                           : source_.number<std::int64_t>(type, order_);
     }
 
     /// Least bytes that one value takes: a digit and a space in text.
-    std::int64_t leastBytes(Scalar type) const {
-        return encoding_ == Encoding::Text ? 2 : bytesOf(type);
+    std::int64_t leastBytes(PixelType type) const {
+        return encoding_ == Encoding::Text ? 2 : static_cast<std::int64_t>(bytesPerPixel(type));
     }
 
 private:
@@ -203,23 +177,6 @@ private:
         std::uint64_t count = 0;
         while (!lines.atEnd()) count += !trimmed(lines.line()).empty();
         return count;
-    }
-
-    std::int64_t binaryInteger(Scalar type) {
-        switch (type) {
-            case Scalar::Int8:
-                return source_.number<std::int8_t>(order_);
-            case Scalar::UInt8:
-                return source_.number<std::uint8_t>(order_);
-            case Scalar::Int16:
-                return source_.number<std::int16_t>(order_);
-            case Scalar::UInt16:
-                return source_.number<std::uint16_t>(order_);
-            case Scalar::Int32:
-                return source_.number<std::int32_t>(order_);
-            default:
-                return source_.number<std::uint32_t>(order_);
-        }
     }
 
     ByteSource& source_;
@@ -242,10 +199,6 @@ void requireElementRoom(const Element& element, const ValueReader& values, std::
     if (least == 0) malformed("its element " + printable(element.name) + " has no property");
     requireRoom(printable(element.name), element.count, least,
                 left + 1);  // the last value needs no space
-}
-
-bool isReal(Scalar type) {
-    return type == Scalar::Float32 || type == Scalar::Float64;
 }
 
 /// Where the values of a vertex go: its place, its normal, a colour, arrays of their own.
@@ -301,7 +254,7 @@ private:
             "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
         std::size_t slot = 0;
         while (slot < kNowhere && (property.isList || property.name != kNames[slot])) ++slot;
-        if (slot >= 6 && property.type != Scalar::UInt8) return kNowhere;
+        if (slot >= 6 && property.type != PixelType::UInt8) return kNowhere;
         if (slot < kNowhere) found_[slot] = true;
         return slot;
     }
@@ -310,7 +263,7 @@ private:
         return value >= 0 && value <= 255 ? static_cast<std::uint8_t>(value) : std::uint8_t{0};
     }
 
-    static void readInto(PointArray& array, Scalar type, ValueReader& values) {
+    static void readInto(PointArray& array, PixelType type, ValueReader& values) {
         if (auto* const numbers = std::get_if<std::vector<double>>(&array.values)) {
             numbers->push_back(values.real(type));
         } else {
@@ -357,22 +310,22 @@ void readFaces(const Element& element, ValueReader& values, TriangleMesh& mesh) 
 /// A property to write: one component of an array.
 struct Column {
     std::string name;
-    Scalar type;
+    PixelType type;
     const PointArray* array;
     std::size_t component;
 };
 
 /// The smallest type that holds whole numbers; double where none does.
-Scalar typeFor(const std::vector<std::int64_t>& values) {
-    if (values.empty()) return Scalar::UInt8;
+PixelType typeFor(const std::vector<std::int64_t>& values) {
+    if (values.empty()) return PixelType::UInt8;
     const auto [least, most] = std::ranges::minmax(values);
-    if (least >= 0 && most <= 255) return Scalar::UInt8;
+    if (least >= 0 && most <= 255) return PixelType::UInt8;
     constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
-    return least >= -kMost && most <= kMost ? Scalar::Int32 : Scalar::Float64;
+    return least >= -kMost && most <= kMost ? PixelType::Int32 : PixelType::Float64;
 }
 
-std::string_view nameOf(Scalar type) {
-    return type == Scalar::UInt8 ? "uchar" : type == Scalar::Int32 ? "int" : "double";
+std::string_view nameOf(PixelType type) {
+    return type == PixelType::UInt8 ? "uchar" : type == PixelType::Int32 ? "int" : "double";
 }
 
 /// A word, and not one that is taken.
@@ -391,7 +344,9 @@ std::vector<Column> columnsOf(const std::vector<PointArray>& arrays) {
     for (const PointArray& array : arrays) {
         const bool areColors = std::holds_alternative<std::vector<Color>>(array.values);
         const auto* const whole = std::get_if<std::vector<std::int64_t>>(&array.values);
-        const Scalar type = areColors ? Scalar::UInt8 : whole ? typeFor(*whole) : Scalar::Float64;
+        const PixelType type = areColors ? PixelType::UInt8
+                               : whole   ? typeFor(*whole)
+                                         : PixelType::Float64;
         const auto components = static_cast<std::size_t>(areColors ? 3 : array.components);
         for (std::size_t c = 0; c < components; ++c) {
             static constexpr std::array<const char*, 3> kShades{"red", "green", "blue"};
@@ -421,9 +376,9 @@ void encodeValue(const Column& column, std::size_t point, ByteSink& sink) {
         return;
     }
     const std::int64_t value = std::get<std::vector<std::int64_t>>(array.values)[at];
-    if (column.type == Scalar::UInt8) sink.littleEndian(static_cast<std::uint8_t>(value));
-    if (column.type == Scalar::Int32) sink.littleEndian(static_cast<std::int32_t>(value));
-    if (column.type == Scalar::Float64) sink.littleEndian(static_cast<double>(value));
+    if (column.type == PixelType::UInt8) sink.littleEndian(static_cast<std::uint8_t>(value));
+    if (column.type == PixelType::Int32) sink.littleEndian(static_cast<std::int32_t>(value));
+    if (column.type == PixelType::Float64) sink.littleEndian(static_cast<double>(value));
 }
 
 void encodeHeader(const MeshWriteOptions& options, std::int64_t points, bool hasNormals,

@@ -205,35 +205,25 @@ void encodeGiftiData(const PointData& data, ByteSink& sink) {
 
 constexpr auto kBig = std::endian::big;
 constexpr std::size_t kHeader = 284;
-enum MghType : std::int32_t { UChar = 0, Int = 1, Float = 3, Short = 4 };
+constexpr std::int32_t kMghInt = 1, kMghFloat = 3;
 
-std::size_t bytesOf(std::int32_t type) {
-    switch (type) {
-        case UChar:
-            return 1;
-        case Short:
-            return 2;
-        case Int:
-        case Float:
-            return 4;
-        default:
-            unsupported("it holds values of type " + std::to_string(type),
-                        "save it as numbers of type float, int, short or uchar");
+PixelType mghType(std::int32_t code) {
+    constexpr std::pair<std::int32_t, PixelType> kTypes[] = {{0, PixelType::UInt8},
+                                                             {kMghInt, PixelType::Int32},
+                                                             {kMghFloat, PixelType::Float32},
+                                                             {4, PixelType::Int16}};
+    for (const auto& [known, type] : kTypes) {
+        if (code == known) return type;
     }
+    unsupported("it holds values of type " + std::to_string(code),
+                "save it as numbers of type float, int, short or uchar");
 }
 
-template <class Stored, class Value>
-std::vector<Value> readFrame(ByteSource& source, std::int64_t points) {
+template <class Value>
+PointValues frameOf(ByteSource& source, std::int64_t points, PixelType type) {
     std::vector<Value> values(static_cast<std::size_t>(points));
-    for (Value& value : values) value = source.number<Stored>(kBig);
-    return values;
-}
-
-PointValues frameOf(ByteSource& source, std::int64_t points, std::int32_t type) {
-    if (type == Float) return {{}, readFrame<float, float>(source, points), 1, {}};
-    if (type == Int) return {{}, readFrame<std::int32_t, std::int32_t>(source, points), 1, {}};
-    if (type == Short) return {{}, readFrame<std::int16_t, std::int32_t>(source, points), 1, {}};
-    return {{}, readFrame<std::uint8_t, std::int32_t>(source, points), 1, {}};
+    for (Value& value : values) value = source.number<Value>(type, kBig);
+    return {{}, std::move(values), 1, {}};
 }
 
 /// FreeSurfer's .mgh, likewise.
@@ -252,14 +242,15 @@ PointData decodeMghData(std::string_view bytes) {
         data.points *= size;
     }
     const std::int64_t frames = source.number<std::int32_t>(kBig);
-    const auto type = source.number<std::int32_t>(kBig);
-    const auto each = static_cast<std::int64_t>(bytesOf(type));
+    const PixelType type = mghType(source.number<std::int32_t>(kBig));
+    const auto each = static_cast<std::int64_t>(bytesPerPixel(type));
     if (frames < 1) damaged("it holds no values");
     source.take(kHeader - source.position());
     requireRoom("values", data.points, each, source.left());
     requireRoom("frames", frames, data.points * each, source.left());
     for (std::int64_t n = 0; n < frames; ++n) {
-        data.arrays.push_back(frameOf(source, data.points, type));
+        data.arrays.push_back(isReal(type) ? frameOf<float>(source, data.points, type)
+                                           : frameOf<std::int32_t>(source, data.points, type));
     }
     return data;
 }
@@ -268,7 +259,8 @@ void encodeMghData(const PointData& data, ByteSink& sink) {
     const bool areLabels = data.arrays.front().areLabels();
     for (const std::int64_t number :
          {std::int64_t{1}, data.points, std::int64_t{1}, std::int64_t{1},
-          static_cast<std::int64_t>(data.arrays.size()), std::int64_t{areLabels ? Int : Float}}) {
+          static_cast<std::int64_t>(data.arrays.size()),
+          std::int64_t{areLabels ? kMghInt : kMghFloat}}) {
         sink.bigEndian(static_cast<std::int32_t>(number));
     }
     sink << std::string(kHeader - 6 * sizeof(std::int32_t), '\0');

@@ -51,6 +51,24 @@ std::vector<std::string> arrayNames(const std::vector<Array>& arrays) {
     return names;
 }
 
+/// An array of points as files hold it: three bytes are a colour each.
+inline PointArray wholeArray(std::string name, PixelType type, std::int64_t components,
+                             std::vector<std::int64_t> numbers) {
+    PointArray array{std::move(name), {}, static_cast<int>(components)};
+    if (type != PixelType::UInt8 || components != 3) {
+        array.values = std::move(numbers);
+        return array;
+    }
+    std::vector<Color> colors(numbers.size() / 3);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const bool isShade = numbers[i] >= 0 && numbers[i] <= 255;
+        colors[i / 3][i % 3] = isShade ? static_cast<std::uint8_t>(numbers[i]) : std::uint8_t{0};
+    }
+    array.components = 1;
+    array.values = std::move(colors);
+    return array;
+}
+
 /// Names of a number's type in the two formats.
 struct NumberType {
     std::string_view inXml, inLegacy;

@@ -15,46 +15,24 @@
 namespace adaptiso::meshio {
 namespace {
 
-enum class Stored { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float, Double };
-
-Stored parseType(std::string_view word) {
+PixelType parseType(std::string_view word) {
     struct Entry {
         std::string_view name;
-        Stored type;
+        PixelType type;
     };
     static constexpr Entry kEntries[] = {
-        {"float", Stored::Float},        {"double", Stored::Double},
-        {"int", Stored::Int32},          {"unsigned_int", Stored::UInt32},
-        {"vtktypeint64", Stored::Int64}, {"vtktypeuint64", Stored::UInt64},
-        {"vtkidtype", Stored::Int32},  // as VTK writes ids before version 5
-        {"long", Stored::Int64},         {"unsigned_long", Stored::UInt64},
-        {"short", Stored::Int16},        {"unsigned_short", Stored::UInt16},
-        {"char", Stored::Int8},          {"signed_char", Stored::Int8},
-        {"unsigned_char", Stored::UInt8}};
+        {"float", PixelType::Float32},      {"double", PixelType::Float64},
+        {"int", PixelType::Int32},          {"unsigned_int", PixelType::UInt32},
+        {"vtktypeint64", PixelType::Int64}, {"vtktypeuint64", PixelType::UInt64},
+        {"vtkidtype", PixelType::Int32},  // as VTK writes ids before version 5
+        {"long", PixelType::Int64},         {"unsigned_long", PixelType::UInt64},
+        {"short", PixelType::Int16},        {"unsigned_short", PixelType::UInt16},
+        {"char", PixelType::Int8},          {"signed_char", PixelType::Int8},
+        {"unsigned_char", PixelType::UInt8}};
     for (const Entry& entry : kEntries) {
         if (lowerCase(word) == entry.name) return entry.type;
     }
     unsupported("it holds numbers of the type " + printable(word), "save it without them");
-}
-
-std::int64_t bytesOf(Stored type) {
-    switch (type) {
-        case Stored::Int8:
-        case Stored::UInt8:
-            return 1;
-        case Stored::Int16:
-        case Stored::UInt16:
-            return 2;
-        case Stored::Int32:
-        case Stored::UInt32:
-        case Stored::Float:
-            return 4;
-        case Stored::Int64:
-        case Stored::UInt64:
-        case Stored::Double:
-            return 8;
-    }
-    return 0;
 }
 
 /// Walks through the sections of a file; keeps the surface and passes over the rest.
@@ -124,7 +102,7 @@ private:
             decodeColors(name, line.integerWord("components"));
         } else if (section == "lookup_table") {
             line.requireWord("a name");
-            skipNumbers(line.integerWord("the size of a table"), 4, Stored::UInt8);
+            skipNumbers(line.integerWord("the size of a table"), 4, PixelType::UInt8);
         } else if (section == "field") {
             decodeField(line);
         } else if (section == "metadata") {
@@ -164,7 +142,7 @@ private:
         const std::int64_t first = line.integerWord("the number of cells");
         const std::int64_t second = line.integerWord("the size of the cells");
         return hasOffsets_ ? readOffsetCells(first, second)
-                           : readIntegers(second, Stored::Int32, "cells");
+                           : readIntegers(second, PixelType::Int32, "cells");
     }
 
     std::vector<std::int64_t> readOffsetCells(std::int64_t offsetCount, std::int64_t cornerCount) {
@@ -188,7 +166,7 @@ private:
 
     void decodeScalars(ByteSource& line) {
         const std::string_view name = line.requireWord("a name");
-        const Stored type = parseType(line.requireWord("a type"));
+        const PixelType type = parseType(line.requireWord("a type"));
         const std::string_view components = line.word();
         if (lowerCase(source_.word()) != "lookup_table")
             malformed("its scalars lack a lookup table");
@@ -200,10 +178,10 @@ private:
     /// Colours, as bytes; in text as parts of 1. With a fourth component, which is passed over.
     void decodeColors(std::string_view name, std::int64_t components) {
         if (!isKept(tuples_, components) || components < 3) {
-            skipNumbers(tuples_, components, Stored::UInt8);
+            skipNumbers(tuples_, components, PixelType::UInt8);
             return;
         }
-        requireNumbers(tuples_, components, Stored::UInt8, "colours");
+        requireNumbers(tuples_, components, PixelType::UInt8, "colours");
         std::vector<Color> colors(tuples_);
         for (Color& color : colors) {
             for (std::int64_t c = 0; c < components; ++c) {
@@ -240,38 +218,22 @@ private:
     }
 
     void decodeArray(std::string_view name, std::int64_t tuples, std::int64_t components,
-                     Stored type) {
+                     PixelType type) {
         if (!isKept(tuples, components)) {
             skipNumbers(tuples, components, type);
             return;
         }
         requireNumbers(tuples, components, type, "values");
-        PointArray array{arrayName(name), {}, static_cast<int>(components)};
         const auto count = static_cast<std::size_t>(tuples * components);
-        if (type == Stored::UInt8 && components == 3) {
-            std::vector<Color> colors(tuples);
-            for (Color& color : colors) {
-                for (std::uint8_t& shade : color) {
-                    const std::int64_t value = wholeNumber(type);
-                    shade = value >= 0 && value <= 255 ? static_cast<std::uint8_t>(value) : 0;
-                }
-            }
-            array.components = 1;
-            array.values = std::move(colors);
-        } else if (type == Stored::Float || type == Stored::Double) {
+        if (isReal(type)) {
             std::vector<double> numbers(count);
             for (double& number : numbers) number = realNumber(type);
-            array.values = std::move(numbers);
+            file_.pointArrays.push_back(
+                {arrayName(name), std::move(numbers), static_cast<int>(components)});
         } else {
-            std::vector<std::int64_t> numbers(count);
-            for (std::int64_t& number : numbers) number = wholeNumber(type);
-            array.values = std::move(numbers);
+            file_.pointArrays.push_back(wholeArray(arrayName(name), type, components,
+                                                   wholeNumbers(count, type, "a whole number")));
         }
-        file_.pointArrays.push_back(std::move(array));
-    }
-
-    std::int64_t wholeNumber(Stored type) {
-        return isBinary_ ? binaryInteger(type) : source_.integerWord("a whole number");
     }
 
     void decodeField(ByteSource& line) {
@@ -327,17 +289,20 @@ private:
         }
     }
 
-    void requireNumbers(std::int64_t tuples, std::int64_t components, Stored type,
+    void requireNumbers(std::int64_t tuples, std::int64_t components, PixelType type,
                         std::string_view what) const {
         requireRoom("components", components, 1, source_.left());
-        const std::int64_t each = isBinary_ ? bytesOf(type) : 2;  // a digit and a space
+        const std::int64_t each =
+            isBinary_ ? static_cast<std::int64_t>(bytesPerPixel(type)) : 2;  // a digit and a space
         if (components > 0) requireRoom(what, tuples, components * each, source_.left() + 1);
     }
 
-    void skipNumbers(std::int64_t tuples, std::int64_t components, Stored type) {
+    void skipNumbers(std::int64_t tuples, std::int64_t components, PixelType type) {
         requireNumbers(tuples, components, type, "tuples");
         if (isBinary_) {
-            source_.take(components == 0 ? 0 : tuples * components * bytesOf(type));
+            source_.take(components == 0 ? 0
+                                         : tuples * components *
+                                               static_cast<std::int64_t>(bytesPerPixel(type)));
             return;
         }
         for (std::int64_t i = 0; components > 0 && i < tuples * components; ++i) {
@@ -345,41 +310,12 @@ private:
         }
     }
 
-    double realNumber(Stored type) {
-        if (!isBinary_) return source_.realWord("a number");
-        switch (type) {
-            case Stored::Float:
-                return source_.number<float>(std::endian::big);
-            case Stored::Double:
-                return source_.number<double>(std::endian::big);
-            default:
-                return static_cast<double>(binaryInteger(type));
-        }
+    double realNumber(PixelType type) {
+        return isBinary_ ? source_.number<double>(type, std::endian::big)
+                         : source_.realWord("a number");
     }
 
-    std::int64_t binaryInteger(Stored type) {
-        switch (type) {
-            case Stored::Int8:
-                return source_.number<std::int8_t>(std::endian::big);
-            case Stored::UInt8:
-                return source_.number<std::uint8_t>(std::endian::big);
-            case Stored::Int16:
-                return source_.number<std::int16_t>(std::endian::big);
-            case Stored::UInt16:
-                return source_.number<std::uint16_t>(std::endian::big);
-            case Stored::Int32:
-                return source_.number<std::int32_t>(std::endian::big);
-            case Stored::UInt32:
-                return source_.number<std::uint32_t>(std::endian::big);
-            case Stored::Int64:
-            case Stored::UInt64:
-                return source_.number<std::int64_t>(std::endian::big);
-            default:
-                malformed("its cells are not whole numbers");
-        }
-    }
-
-    std::vector<Vec3> readVectors(std::int64_t count, Stored type, std::string_view what) {
+    std::vector<Vec3> readVectors(std::int64_t count, PixelType type, std::string_view what) {
         requireNumbers(count, 3, type, what);
         std::vector<Vec3> vectors(count);
         for (Vec3& v : vectors) {
@@ -388,13 +324,21 @@ private:
         return vectors;
     }
 
-    std::vector<std::int64_t> readIntegers(std::int64_t count, Stored type, std::string_view what) {
+    std::vector<std::int64_t> readIntegers(std::int64_t count, PixelType type,
+                                           std::string_view what) {
         requireNumbers(count, 1, type, what);
-        std::vector<std::int64_t> integers(count);
-        for (std::int64_t& integer : integers) {
-            integer = isBinary_ ? binaryInteger(type) : source_.integerWord(what);
+        if (isBinary_ && isReal(type)) malformed("its cells are not whole numbers");
+        return wholeNumbers(static_cast<std::size_t>(count), type, what);
+    }
+
+    std::vector<std::int64_t> wholeNumbers(std::size_t count, PixelType type,
+                                           std::string_view what) {
+        std::vector<std::int64_t> numbers(count);
+        for (std::int64_t& number : numbers) {
+            number = isBinary_ ? source_.number<std::int64_t>(type, std::endian::big)
+                               : source_.integerWord(what);
         }
-        return integers;
+        return numbers;
     }
 
     ByteSource source_;

@@ -99,6 +99,17 @@ private:
     std::size_t arrayDepth_ = 0;
 };
 
+/// "Float64", "UInt8"
+PixelType typeOf(const XmlAttributes& attributes, std::string_view what) {
+    const std::string& name = requireAttribute(attributes, "type");
+    for (int n = 0; n <= static_cast<int>(PixelType::Float64); ++n) {
+        const auto type = static_cast<PixelType>(n);
+        if (lowerCase(name) == toString(type)) return type;
+    }
+    unsupported("its " + std::string(what) + " have the type " + printable(name),
+                "save them as Float64 or Int64");
+}
+
 /// Gets at the bytes of arrays, however they are kept.
 class ArrayReader {
 public:
@@ -124,19 +135,10 @@ public:
         if (requireAttribute(array.attributes, "format") == "ascii") {
             return textNumbers<T>(array.text, count, what);
         }
-        const std::string& type = requireAttribute(array.attributes, "type");
-        if (type == "Float32") return binaryNumbers<float, T>(array, count, what);
-        if (type == "Float64") return binaryNumbers<double, T>(array, count, what);
-        if (type == "Int32") return binaryNumbers<std::int32_t, T>(array, count, what);
-        if (type == "Int64") return binaryNumbers<std::int64_t, T>(array, count, what);
-        if (type == "Int8") return binaryNumbers<std::int8_t, T>(array, count, what);
-        if (type == "UInt8") return binaryNumbers<std::uint8_t, T>(array, count, what);
-        if (type == "Int16") return binaryNumbers<std::int16_t, T>(array, count, what);
-        if (type == "UInt16") return binaryNumbers<std::uint16_t, T>(array, count, what);
-        if (type == "UInt32") return binaryNumbers<std::uint32_t, T>(array, count, what);
-        if (type == "UInt64") return binaryNumbers<std::uint64_t, T>(array, count, what);
-        unsupported("its " + std::string(what) + " have the type " + printable(type),
-                    "save them as Float64 or Int64");
+        const PixelType type = typeOf(array.attributes, what);
+        return withPixelType(type, [&]<class Stored>(Stored) {
+            return binaryNumbers<Stored, T>(array, count, what);
+        });
     }
 
     /// The first string of a string array: characters up to a zero byte.
@@ -311,27 +313,15 @@ std::optional<PointArray> decodePointArray(const DataArray& stored, std::int64_t
     const std::int64_t components =
         toInteger(attributeOr(attributes, "NumberOfComponents", "1"), "a number of components");
     if (components < 1 || components > kMostComponents) return std::nullopt;
-    const std::string& type = requireAttribute(attributes, "type");
-    const std::string what = "values";
-    PointArray array{
-        storedName(attributeOr(attributes, "Name", "")), {}, static_cast<int>(components)};
-    if (type.starts_with("Float")) {
-        array.values = reader.numbers<double>(stored, components * points, what);
-        return array;
+    const PixelType type = typeOf(attributes, "values");
+    std::string name = storedName(attributeOr(attributes, "Name", ""));
+    if (isReal(type)) {
+        return PointArray{std::move(name),
+                          reader.numbers<double>(stored, components * points, "values"),
+                          static_cast<int>(components)};
     }
-    std::vector<std::int64_t> numbers =
-        reader.numbers<std::int64_t>(stored, components * points, what);
-    if (type != "UInt8" || components != 3) {
-        array.values = std::move(numbers);
-        return array;
-    }
-    std::vector<Color> colors(points);
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        colors[i / 3][i % 3] = static_cast<std::uint8_t>(numbers[i] & 0xFF);
-    }
-    array.components = 1;
-    array.values = std::move(colors);
-    return array;
+    return wholeArray(std::move(name), type, components,
+                      reader.numbers<std::int64_t>(stored, components * points, "values"));
 }
 
 /// Numbers as appended data holds them: a table of the lengths of packed blocks, then the blocks,
