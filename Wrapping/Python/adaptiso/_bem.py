@@ -92,22 +92,6 @@ class HeadModel:
 
     It pickles, so that a pool of processes can return it; `save` and `report_html` need the image,
     and are for the process that made it.
-
-    Attributes
-    ----------
-    surfaces : dict of str to Mesh
-        "inner_skull", "outer_skull", "outer_skin", from inside out (of MEG the first alone, of four
-        layers "brain" before them), in scanner RAS mm. Each is closed, in one piece, of genus 0, and does not cross itself; each
-        lies strictly inside the next, with the gaps asked for.
-    electrodes : dict of str to (float, float, float)
-        On the skin, by name, scanner RAS mm; empty where none were asked for.
-    landmarks : dict of str to (float, float, float)
-        "Nasion", "LPA", "RPA", scanner RAS mm, where they are known; as exact as they were given,
-        or, where they were guessed, as the warnings say.
-    check : Check
-        That this is so, found anew.
-    report : dict
-        Surfaces, measures and checks: the report adaptiso-bem/1, points in LPS mm.
     """
 
     __slots__ = ("_data", "_surfaces", "_check", "_report", "_threads", "__weakref__")
@@ -121,7 +105,10 @@ class HeadModel:
 
     @property
     def surfaces(self) -> Dict[str, Mesh]:
-        """The surfaces by name, from inside out, in scanner RAS mm."""
+        """By name, from inside out, scanner RAS mm: "inner_skull", "outer_skull", "outer_skin" (of
+        MEG the first alone, of four layers "brain" before them). Each is closed, in one piece, of
+        genus 0, and does not cross itself; each lies strictly inside the next, with the gaps asked
+        for."""
         if self._surfaces is None:
             meshes = list(map(Mesh._of, self._data.surfaces))
             names = ("inner_skull",) if len(meshes) == 1 else SURFACES[-len(meshes):]
@@ -130,12 +117,13 @@ class HeadModel:
 
     @property
     def electrodes(self) -> Dict[str, Point]:
-        """Electrodes on the skin, by name, scanner RAS mm."""
+        """On the skin, by name, scanner RAS mm; empty where none were asked for."""
         return dict(self._data.electrodes)
 
     @property
     def landmarks(self) -> Dict[str, Point]:
-        """Nasion, LPA and RPA, scanner RAS mm; empty where they are not known."""
+        """By name ("Nasion", "LPA", "RPA"), scanner RAS mm; empty where they are not known. As exact
+        as they were given, or, where they were guessed, as the warnings say."""
         return dict(self._data.landmarks)
 
     @property
@@ -147,7 +135,7 @@ class HeadModel:
 
     @property
     def report(self) -> Dict[str, Any]:
-        """The report adaptiso-bem/1, as ``adaptiso-bem --json`` writes it."""
+        """The report adaptiso-bem/1, as ``adaptiso-bem --json`` writes it; points in LPS mm."""
         if self._report is None:
             self._report = json.loads(self._data.report())
         return self._report

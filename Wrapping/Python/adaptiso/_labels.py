@@ -67,18 +67,9 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
     Where two regions meet, their surfaces have the same triangles. Nothing of it changes, so
     threads may share it; it pickles.
 
-    Attributes
-    ----------
-    vertices : ndarray of float64, shape (n, 3)
-        Scanner RAS mm (of an array without affine: voxels).
-    faces : ndarray of int64, shape (m, 3)
-        Counter-clockwise seen from the second region: normals point from `label0` into `label1`.
-    label0, label1 : ndarray of int32, shape (m,)
-        The regions on both sides of each face: the smaller label first, 0 last.
-    regions : dict of int to Region
-        By label: names, measures, neighbours.
-    report : dict
-        ``walls`` and ``regions`` as ``adaptiso-labels --json`` has them.
+    `vertices` are in scanner RAS mm (of an array without affine: voxels); `faces` run
+    counter-clockwise seen from the second region: normals point from `label0` into `label1`, the
+    larger label but for 0, which comes last.
     """
 
     __slots__ = ("_names", "_report", "_regions")
@@ -112,7 +103,7 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
 
     @property
     def regions(self) -> Dict[int, Region]:
-        """The regions, by label."""
+        """By label: names, measures, neighbours."""
         if self._regions is None:
             self._regions = {entry["label"]: self._region_of(entry)
                              for entry in self.report["regions"]}

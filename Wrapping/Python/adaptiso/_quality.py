@@ -39,11 +39,6 @@ class Check(_Report):
 
     Attributes
     ----------
-    passed : bool
-    failed : list of str
-        Names of what is required and does not hold; of nested surfaces "inner_skull: closed".
-    findings : list of str
-        The same in words, with the place.
     report : dict
         Everything, as ``adaptiso-check --json`` has it: of one surface an entry of its
         ``surfaces``, of nested ones ``surfaces`` and ``nesting``.
@@ -65,7 +60,7 @@ class Check(_Report):
 
     @property
     def failed(self) -> List[str]:
-        """Names of what is required and does not hold."""
+        """Names of what is required and does not hold; of nested surfaces "inner_skull: closed"."""
         return [f"{subject}: {name}" if subject else str(name)
                 for subject, judged in self._judged() for name in judged["failed"]]
 
@@ -86,12 +81,10 @@ class Check(_Report):
 
 
 class Comparison(_Report):
-    """The distance between two surfaces, both ways together, mm.
+    """The distance between two surfaces, both ways together, mm: of points spread evenly over both.
 
     Attributes
     ----------
-    mean, rms, p95, p99, max : float
-        Of points spread evenly over both; `max` is the Hausdorff distance.
     report : dict
         ``a``, ``b`` and ``distances`` as ``adaptiso-compare --json`` has them.
     """
