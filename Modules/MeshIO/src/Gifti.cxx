@@ -87,84 +87,36 @@ void encodeCoordinateSystem(const MeshWriteOptions& options, ByteSink& sink) {
     sink << "0 0 0 1\n</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
 }
 
-/// A CoordinateSystemTransformMatrix of the points.
-struct GiftiSpace {
-    std::string dataSpace, transformedSpace, matrix;
-};
-
 using Metadata = std::map<std::string, std::string, std::less<>>;
 
-bool isAskedFor(std::string_view key) {
-    return key == kFrameKey || key == kProgramKey || key.starts_with(kVolumeKey);
-}
-
-/// Collects the POINTSET, the TRIANGLE array and what the file says of its frame: metadata of the
-/// file and of its points.
-class GiftiHandler : public XmlHandler {
-public:
-    void onStart(const std::string& element, const XmlAttributes& attributes) override {
-        if (depth_++ == 0 && element != "GIFTI") {
-            unsupported("its XML is a " + printable(element) + ", must be GIFTI",
-                        "it is no GIFTI file: get it again");
-        }
-        text_ = nullptr;
-        if (element == "DataArray") {
-            array_ = nullptr;
-            isInArray_ = true;
-            const std::string& intent = requireAttribute(attributes, "Intent");
-            if (intent == "NIFTI_INTENT_POINTSET") array_ = &points;
-            if (intent == "NIFTI_INTENT_TRIANGLE") array_ = &triangles;
-            if (array_ == nullptr) otherIntent = intent;
-            if (array_ != nullptr) {
-                if (!array_->attributes.empty()) {
-                    unsupported("it holds several surfaces", "save each to its own file");
-                }
-                array_->attributes = attributes;
-            }
-        } else if (element == "Data" && array_ != nullptr) {
-            text_ = &array_->text;
-        } else if (element == "Name") {
-            name_.clear();
-            text_ = &name_;
-        } else if (element == "Value" && (!isInArray_ || array_ == &points)) {
-            const std::string key(trimmed(name_));
-            if (isAskedFor(key)) text_ = &(metadata[key] = {});
-        } else if (array_ == &points) {
-            startSpace(element);
-        }
-    }
-    void onEnd(const std::string& element) override {
-        --depth_;
-        text_ = nullptr;
-        if (element == "DataArray") {
-            array_ = nullptr;
-            isInArray_ = false;
-        }
-    }
-    void onText(std::string_view text) override {
-        if (text_ != nullptr) text_->append(text);
-    }
-
+/// The surface of a file, and what it says of its frame.
+struct GiftiSurface {
     GiftiArray points, triangles;
-    Metadata metadata;
-    std::vector<GiftiSpace> spaces;
+    Metadata metadata;  ///< of the file and of the points
     std::string otherIntent;
-
-private:
-    void startSpace(const std::string& element) {
-        if (element == "CoordinateSystemTransformMatrix") spaces.emplace_back();
-        if (spaces.empty()) return;
-        if (element == "DataSpace") text_ = &spaces.back().dataSpace;
-        if (element == "TransformedSpace") text_ = &spaces.back().transformedSpace;
-        if (element == "MatrixData") text_ = &spaces.back().matrix;
-    }
-
-    int depth_ = 0;
-    bool isInArray_ = false;
-    GiftiArray* array_ = nullptr;  ///< the wanted array around this place
-    std::string* text_ = nullptr;  ///< where text at this place goes
-    std::string name_;
 };
+
+GiftiSurface surfaceOf(GiftiFile&& file) {
+    GiftiSurface surface;
+    for (GiftiArray& array : file.arrays) {
+        const std::string& intent = requireAttribute(array.attributes, "Intent");
+        GiftiArray* const kept = intent == "NIFTI_INTENT_POINTSET"   ? &surface.points
+                                 : intent == "NIFTI_INTENT_TRIANGLE" ? &surface.triangles
+                                                                     : nullptr;
+        if (kept == nullptr) {
+            surface.otherIntent = intent;
+            continue;
+        }
+        if (!kept->attributes.empty()) {
+            unsupported("it holds several surfaces", "save each to its own file");
+        }
+        *kept = std::move(array);
+    }
+    for (const GiftiMetadata* const list : {&file.metadata, &surface.points.metadata}) {
+        for (const auto& [key, value] : *list) surface.metadata[key] = value;
+    }
+    return surface;
+}
 
 /// The volume in VolGeom; empty if incomplete or sheared. Where the volume lies depends on its axes
 /// and centre alone: without a size it is FreeSurfer's, 256 voxels of 1 mm, and without axes they
@@ -230,7 +182,7 @@ bool areAlike(const AffineTransform& a, const AffineTransform& b) {
 }
 
 /// Finds the frame of the points, and what leads from it to scanner space.
-void place(const GiftiHandler& found, const MeshReadOptions& options, MeshFile& file) {
+void place(const GiftiSurface& found, const MeshReadOptions& options, MeshFile& file) {
     const auto value = [&](std::string_view key) {
         const auto entry = found.metadata.find(key);
         return entry == found.metadata.end() ? std::string_view() : trimmed(entry->second);
@@ -238,7 +190,7 @@ void place(const GiftiHandler& found, const MeshReadOptions& options, MeshFile& 
     FrameMarks marks(options);
     marks.add(parseCoordinateFrame(value(kFrameKey)));
     std::optional<AffineTransform> toScanner;
-    for (const GiftiSpace& space : found.spaces) {
+    for (const GiftiSpace& space : found.points.spaces) {
         if (isWorld(trimmed(space.dataSpace))) {
             marks.add(CoordinateFrame::Ras);
         } else if (trimmed(space.transformedSpace) == kScannerSpace && !marks.isStated()) {
@@ -316,8 +268,7 @@ void encodeGifti(const MeshRecord& record, ByteSink& sink) {
 }
 
 MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options) {
-    GiftiHandler found;
-    parseXml(bytes, found);
+    GiftiSurface found = surfaceOf(parseGifti(bytes));
     if (found.points.attributes.empty() || found.triangles.attributes.empty()) {
         const bool hasPoints = !found.points.attributes.empty();
         const bool isEmpty = found.otherIntent.empty();

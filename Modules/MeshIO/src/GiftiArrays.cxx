@@ -1,9 +1,72 @@
 #include "GiftiArrays.h"
 
+#include <utility>
+
 #include "Bytes.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::meshio {
+namespace {
+
+class GiftiHandler : public XmlHandler {
+public:
+    void onStart(const std::string& element, const XmlAttributes& attributes) override {
+        if (depth_++ == 0 && element != "GIFTI") {
+            unsupported("its XML is a " + printable(element) + ", must be GIFTI",
+                        "it is no GIFTI file: get it again");
+        }
+        text_ = nullptr;
+        if (element == "DataArray") {
+            file.arrays.push_back({attributes});
+            isInArray_ = true;
+        } else if (element == "Label") {
+            text_ = &file.labels.emplace_back(attributes, "").second;
+        } else if (element == "Name" || element == "Value") {
+            text_ = element == "Name" ? &name_ : &value_;
+            text_->clear();
+        } else if (isInArray_) {
+            startInArray(element, file.arrays.back());
+        }
+    }
+    void onEnd(const std::string& element) override {
+        --depth_;
+        text_ = nullptr;
+        if (element == "DataArray") isInArray_ = false;
+        if (element != "MD") return;
+        (isInArray_ ? file.arrays.back().metadata : file.metadata)
+            .emplace_back(trimmed(name_), trimmed(value_));
+        name_.clear();
+        value_.clear();
+    }
+    void onText(std::string_view text) override {
+        if (text_ != nullptr) text_->append(text);
+    }
+
+    GiftiFile file;
+
+private:
+    void startInArray(const std::string& element, GiftiArray& array) {
+        if (element == "Data") text_ = &array.text;
+        if (element == "CoordinateSystemTransformMatrix") array.spaces.emplace_back();
+        if (array.spaces.empty()) return;
+        if (element == "DataSpace") text_ = &array.spaces.back().dataSpace;
+        if (element == "TransformedSpace") text_ = &array.spaces.back().transformedSpace;
+        if (element == "MatrixData") text_ = &array.spaces.back().matrix;
+    }
+
+    int depth_ = 0;
+    bool isInArray_ = false;
+    std::string* text_ = nullptr;  ///< where text at this place goes
+    std::string name_, value_;
+};
+
+}  // namespace
+
+GiftiFile parseGifti(std::string_view bytes) {
+    GiftiHandler handler;
+    parseXml(bytes, handler);
+    return std::move(handler.file);
+}
 
 GiftiShape shapeOf(const XmlAttributes& attributes, std::string_view what) {
     const std::string dimensions = attributeOr(attributes, "Dimensionality", "1");

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "Bytes.h"
@@ -21,12 +22,31 @@ inline constexpr std::string_view kGiftiHead =
 
 inline constexpr std::string_view kExternalFile = "ExternalFileBinary";
 
+using GiftiMetadata = std::vector<std::pair<std::string, std::string>>;
+
+/// A CoordinateSystemTransformMatrix.
+struct GiftiSpace {
+    std::string dataSpace, transformedSpace, matrix;
+};
+
 /// A DataArray as the file has it.
 struct GiftiArray {
-    XmlAttributes attributes;
-    std::string text;
+    XmlAttributes attributes{};
+    std::string text{};
     bool isExternal = false;  ///< `text` is the bytes of the file that loadExternal() read
+    GiftiMetadata metadata{};
+    std::vector<GiftiSpace> spaces{};
 };
+
+/// The content of a file; names and values of metadata are trimmed.
+struct GiftiFile {
+    std::vector<GiftiArray> arrays;
+    std::vector<std::pair<XmlAttributes, std::string>> labels;  ///< with their names
+    GiftiMetadata metadata;
+};
+
+/// \throws FileError  it is no GIFTI file
+GiftiFile parseGifti(std::string_view bytes);
 
 /// Reads the data of an array that lie in a file of their own (ExternalFileBinary, as SPM writes):
 /// a plain file in `folder`, nowhere else. Other arrays stay as they are. \throws FileError

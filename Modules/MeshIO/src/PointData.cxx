@@ -27,89 +27,33 @@ namespace adaptiso::meshio {
 
 namespace {
 
-using Metadata = std::vector<std::pair<std::string, std::string>>;
-
-/// Keeps the metadata that readers need; the rest may name people, places and dates.
-bool isKept(std::string_view name, bool isOfArray) {
-    return name.starts_with("AnatomicalStructure") || (isOfArray && name == "Name");
+/// The metadata that readers need; the rest may name people, places and dates.
+GiftiMetadata kept(const GiftiMetadata& metadata, bool isOfArray) {
+    GiftiMetadata result;
+    for (const auto& [name, value] : metadata) {
+        if (!name.starts_with("AnatomicalStructure") && !(isOfArray && name == "Name")) continue;
+        result.emplace_back(storedName(name), storedName(value));
+    }
+    return result;
 }
 
-struct StoredArray {
-    GiftiArray array;
-    Metadata metadata;
-};
-
-/// Collects arrays, labels and metadata.
-class DataHandler : public XmlHandler {
-public:
-    void onStart(const std::string& element, const XmlAttributes& attributes) override {
-        if (path_.empty() && element != "GIFTI") {
-            unsupported("its XML is a " + printable(element) + ", must be GIFTI",
-                        "it is no GIFTI file: get it again");
-        }
-        text_ = nullptr;
-        if (element == "DataArray") {
-            arrays.push_back({{attributes, {}}, {}});
-            isInArray_ = true;
-        } else if (element == "Data" && isInArray_) {
-            text_ = &arrays.back().array.text;
-        } else if (element == "Label") {
-            labels.push_back(labelOf(attributes));
-            text_ = &labels.back().name;
-        } else if (element == "Name" || element == "Value") {
-            text_ = element == "Name" ? &name_ : &value_;
-            text_->clear();
-        }
-        path_.push_back(element);
+PointLabel labelOf(const XmlAttributes& attributes, const std::string& name) {
+    PointLabel label;
+    const std::string key = attributeOr(attributes, "Key", attributeOr(attributes, "Index", ""));
+    label.key = static_cast<std::int32_t>(toInteger(key, "a label's key"));
+    label.name = storedName(trimmed(name));
+    static constexpr const char* kChannels[] = {"Red", "Green", "Blue", "Alpha"};
+    if (attributes.find("Red") == attributes.end()) return label;
+    label.rgba.emplace();
+    for (std::size_t n = 0; n < 4; ++n) {
+        const double part = toReal(attributeOr(attributes, kChannels[n], "1"), "a colour");
+        (*label.rgba)[n] = part >= 0 && part <= 1 ? part : 0;
     }
-    void onEnd(const std::string& element) override {
-        path_.pop_back();
-        text_ = nullptr;
-        if (element == "DataArray") isInArray_ = false;
-        if (element == "MD") keepMetadata();
-    }
-    void onText(std::string_view text) override {
-        if (text_ != nullptr) text_->append(text);
-    }
+    return label;
+}
 
-    std::vector<StoredArray> arrays;
-    std::vector<PointLabel> labels;
-    Metadata metadata;
-
-private:
-    static PointLabel labelOf(const XmlAttributes& attributes) {
-        PointLabel label;
-        const std::string key =
-            attributeOr(attributes, "Key", attributeOr(attributes, "Index", ""));
-        label.key = static_cast<std::int32_t>(toInteger(key, "a label's key"));
-        static constexpr const char* kChannels[] = {"Red", "Green", "Blue", "Alpha"};
-        if (attributes.find("Red") == attributes.end()) return label;
-        label.rgba.emplace();
-        for (std::size_t n = 0; n < 4; ++n) {
-            const double part = toReal(attributeOr(attributes, kChannels[n], "1"), "a colour");
-            (*label.rgba)[n] = part >= 0 && part <= 1 ? part : 0;
-        }
-        return label;
-    }
-
-    void keepMetadata() {
-        const std::string_view name = trimmed(name_);
-        if (isKept(name, isInArray_)) {
-            Metadata& to = isInArray_ ? arrays.back().metadata : metadata;
-            to.emplace_back(storedName(name), storedName(trimmed(value_)));
-        }
-        name_.clear();
-        value_.clear();
-    }
-
-    std::vector<std::string> path_;  ///< the elements around this place
-    bool isInArray_ = false;
-    std::string* text_ = nullptr;  ///< where text at this place goes
-    std::string name_, value_;
-};
-
-PointValues decodeArray(const StoredArray& stored) {
-    const XmlAttributes& attributes = stored.array.attributes;
+PointValues decodeArray(const GiftiArray& stored) {
+    const XmlAttributes& attributes = stored.attributes;
     PointValues array;
     array.intent = storedName(attributeOr(attributes, "Intent", "NIFTI_INTENT_NONE"));
     if (array.intent == "NIFTI_INTENT_POINTSET" || array.intent == "NIFTI_INTENT_TRIANGLE") {
@@ -120,21 +64,21 @@ PointValues decodeArray(const StoredArray& stored) {
     }
     const GiftiShape shape = shapeOf(attributes, "values");
     array.columns = shape.columns;
-    array.metadata = stored.metadata;
+    array.metadata = kept(stored.metadata, true);
     const std::string& type = requireAttribute(attributes, "DataType");
     if (type == "NIFTI_TYPE_FLOAT32") {
-        array.values = decodeGiftiRows<float, float>(stored.array, shape, "values");
+        array.values = decodeGiftiRows<float, float>(stored, shape, "values");
     } else if (type == "NIFTI_TYPE_INT32") {
-        array.values = decodeGiftiRows<std::int32_t, std::int32_t>(stored.array, shape, "values");
+        array.values = decodeGiftiRows<std::int32_t, std::int32_t>(stored, shape, "values");
     } else if (type == "NIFTI_TYPE_UINT8") {
-        array.values = decodeGiftiRows<std::uint8_t, std::int32_t>(stored.array, shape, "values");
+        array.values = decodeGiftiRows<std::uint8_t, std::int32_t>(stored, shape, "values");
     } else {
         unsupported("its values are " + printable(type), "save them as NIFTI_TYPE_FLOAT32");
     }
     return array;
 }
 
-void encodeMetadata(const Metadata& metadata, ByteSink& sink) {
+void encodeMetadata(const GiftiMetadata& metadata, ByteSink& sink) {
     if (metadata.empty()) {
         sink << "<MetaData/>\n";
         return;
@@ -167,14 +111,14 @@ void encodeLabels(const std::vector<PointLabel>& labels, ByteSink& sink) {
 
 /// GIFTI files of values at points. decodePointData() checks what is read, and names the file.
 PointData decodeGiftiData(std::string_view bytes) {
-    DataHandler found;
-    parseXml(bytes, found);
+    const GiftiFile found = parseGifti(bytes);
     PointData data;
     data.format = PointDataFormat::Gifti;
-    data.labels = std::move(found.labels);
-    for (PointLabel& label : data.labels) label.name = storedName(trimmed(label.name));
-    data.metadata = std::move(found.metadata);
-    for (const StoredArray& stored : found.arrays) data.arrays.push_back(decodeArray(stored));
+    for (const auto& [attributes, name] : found.labels) {
+        data.labels.push_back(labelOf(attributes, name));
+    }
+    data.metadata = kept(found.metadata, false);
+    for (const GiftiArray& array : found.arrays) data.arrays.push_back(decodeArray(array));
     if (data.arrays.empty()) damaged("it holds no values");
     const PointValues& first = data.arrays.front();
     const auto size = [](const auto& values) { return std::ssize(values); };
