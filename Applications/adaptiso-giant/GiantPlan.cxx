@@ -61,128 +61,79 @@ Json identityJson(const GiantPlan& plan) {
                     "); make it again with: adaptiso-giant plan");
 }
 
-/// Reads the output of encodePlan() and validates every value.
-class PlanReader {
-public:
-    PlanReader(const Json& json, const std::string& name) : json_(json), name_(name) {}
+std::int64_t countOf(const Json& json) {
+    return static_cast<std::int64_t>(json.get_ref<const Json::number_unsigned_t&>());
+}
 
-    GiantPlan read() const {
-        if (text(json_, "schema") != kSchema) refusePlan(name_, "another schema");
-        GiantPlan plan;
-        plan.version = text(json_, "version");
-        plan.input = text(json_, "input");
-        plan.format = text(json_, "format");
-        readOptions(plan.read);
-        readImage(plan);
-        plan.isovalue = number(member(json_, "isovalue"));
-        const std::string method = text(json_, "method");
-        if (method != "mc" && method != "adaptive") refusePlan(name_, "method");
-        plan.method = method == "mc" ? Method::MarchingCubes : Method::Adaptive;
-        plan.maxErrorMm = number(member(json_, "maxErrorMm"));
-        if (plan.isAdaptive() && !(plan.maxErrorMm > 0)) refusePlan(name_, "maxErrorMm");
-        plan.side = whole(member(json_, "side"), 1, TileCut::kLargestSide);
-        readTiles(plan);
-        for (const Json& warning : member(json_, "warnings")) {
-            plan.warnings.push_back({text(warning, "code"), text(warning, "text")});
-        }
-        return plan;
-    }
+std::optional<std::int64_t> countOrNone(const Json& json) {
+    return json.is_null() ? std::nullopt : std::optional(countOf(json));
+}
 
-private:
-    const Json& member(const Json& object, const char* key) const {
-        if (!object.is_object() || !object.contains(key)) refusePlan(name_, key);
-        return object.at(key);
-    }
-    std::string text(const Json& object, const char* key) const {
-        const Json& value = member(object, key);
-        if (!value.is_string()) refusePlan(name_, key);
-        return value.get<std::string>();
-    }
-    double number(const Json& value) const {
-        if (!value.is_number() || !std::isfinite(value.get<double>())) refusePlan(name_, "number");
-        return value.get<double>();
-    }
-    std::int64_t whole(const Json& value, std::int64_t least, std::int64_t most) const {
-        if (!value.is_number_integer() ||
-            (value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX) ||
-            value.get<std::int64_t>() < least || value.get<std::int64_t>() > most) {
-            refusePlan(name_, "whole number");
-        }
-        return value.get<std::int64_t>();
-    }
-    bool flag(const Json& object, const char* key) const {
-        const Json& value = member(object, key);
-        if (!value.is_boolean()) refusePlan(name_, key);
-        return value.get<bool>();
-    }
-    const Json& list(const Json& value, std::size_t count) const {
-        if (!value.is_array() || value.size() != count) refusePlan(name_, "list");
-        return value;
-    }
-    Vec3 vectorOf(const Json& value) const {
-        const Json& three = list(value, 3);
-        return {number(three[0]), number(three[1]), number(three[2])};
-    }
-    std::optional<std::int64_t> countOrNone(const Json& object, const char* key) const {
-        const Json& value = member(object, key);
-        if (value.is_null()) return std::nullopt;
-        return whole(value, 0, INT64_MAX);
-    }
+Vec3 vectorOf(const Json& json) {
+    return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
 
-    void readOptions(ReadOptions& read) const {
-        const Json& json = member(json_, "read");
-        read.level = countOrNone(json, "level");
-        read.channel = countOrNone(json, "channel");
-        read.timePoint = countOrNone(json, "time");
-        read.volumeIndex = countOrNone(json, "volumeIndex");
-        if (!member(json, "series").is_null()) read.series = text(json, "series");
-        read.resampleSlices = flag(json, "resampleSlices");
-        read.refusesMissingChunks = flag(json, "refuseMissingChunks");
+/// The values of a plan; that they are those of encodePlan() is to be checked.
+/// \throws Json::exception  one is missing, or of another type
+GiantPlan planFrom(const Json& json) {
+    GiantPlan plan;
+    plan.version = json.at("version").get<std::string>();
+    plan.input = json.at("input").get<std::string>();
+    const Json& read = json.at("read");
+    plan.read.level = countOrNone(read.at("level"));
+    plan.read.channel = countOrNone(read.at("channel"));
+    plan.read.timePoint = countOrNone(read.at("time"));
+    plan.read.volumeIndex = countOrNone(read.at("volumeIndex"));
+    if (!read.at("series").is_null()) plan.read.series = read.at("series").get<std::string>();
+    plan.read.resampleSlices = read.at("resampleSlices");
+    plan.read.refusesMissingChunks = read.at("refuseMissingChunks");
+    plan.format = json.at("format").get<std::string>();
+    for (std::size_t a = 0; a < 3; ++a) {
+        plan.geometry.size[a] = countOf(json.at("sizeVoxels").at(a));
+        plan.geometry.indexToPhysical.column[a] = vectorOf(json.at("indexToPhysical").at(a));
     }
-
-    void readImage(GiantPlan& plan) const {
-        constexpr std::int64_t kMost = 1 << 20;
-        const Json& size = list(member(json_, "sizeVoxels"), 3);
-        const Json& axes = list(member(json_, "indexToPhysical"), 3);
-        for (std::size_t a = 0; a < 3; ++a) {
-            plan.geometry.size[a] = whole(size[a], 1, kMost);
-            plan.geometry.indexToPhysical.column[a] = vectorOf(axes[a]);
-        }
-        plan.geometry.originMm = vectorOf(member(json_, "originMm"));
-        const double volume = plan.geometry.voxelVolumeMm3();
-        if (!(volume > 0) || !std::isfinite(volume)) refusePlan(name_, "indexToPhysical");
-        const std::string type = text(json_, "pixelType");
-        for (int n = 0; n <= static_cast<int>(PixelType::Float64); ++n) {
-            plan.pixelType = static_cast<PixelType>(n);
-            if (toString(plan.pixelType) == type) return;
-        }
-        refusePlan(name_, "pixelType");
+    plan.geometry.originMm = vectorOf(json.at("originMm"));
+    for (int n = 0; n <= static_cast<int>(PixelType::Float64); ++n) {
+        const auto type = static_cast<PixelType>(n);
+        if (json.at("pixelType") == toString(type)) plan.pixelType = type;
     }
-
-    void readTiles(GiantPlan& plan) const {
-        Index3 count;
-        try {
-            count = plan.cut().tiles();
-        } catch (const InvalidInput& error) {
-            refusePlan(name_, error.what());
-        }
-        const Json& tiles = member(json_, "tiles");
-        if (!tiles.is_array()) refusePlan(name_, "tiles");
-        for (const Json& id : tiles) {
-            const std::optional<Index3> tile =
-                id.is_string() ? placeOf(id.get_ref<const std::string&>()) : std::nullopt;
-            if (!tile || (*tile)[0] >= count[0] || (*tile)[1] >= count[1] ||
-                (*tile)[2] >= count[2] ||
-                (!plan.tiles.empty() && orderOf(plan.tiles.back()) >= orderOf(*tile))) {
-                refusePlan(name_, "tiles");
-            }
-            plan.tiles.push_back(*tile);
-        }
+    plan.isovalue = json.at("isovalue");
+    plan.method = json.at("method") == "mc" ? Method::MarchingCubes : Method::Adaptive;
+    plan.maxErrorMm = json.at("maxErrorMm");
+    plan.side = countOf(json.at("side"));
+    for (const Json& warning : json.at("warnings")) {
+        plan.warnings.push_back({warning.at("code"), warning.at("text")});
     }
+    for (const Json& id : json.at("tiles")) {
+        plan.tiles.push_back(placeOf(id.get<std::string>()).value_or(Index3{}));
+    }
+    return plan;
+}
 
-    const Json& json_;
-    const std::string& name_;
-};
+/// What is wrong with the values; may be empty.
+std::string faultOf(const GiantPlan& plan) {
+    constexpr std::int64_t kMost = 1 << 20;
+    for (const std::int64_t extent : plan.geometry.size) {
+        if (extent < 1 || extent > kMost) return "sizeVoxels";
+    }
+    const double volume = plan.geometry.voxelVolumeMm3();
+    if (!(volume > 0) || !std::isfinite(volume)) return "indexToPhysical";
+    if (plan.isAdaptive() && !(plan.maxErrorMm > 0)) return "maxErrorMm";
+    if (plan.side < 1 || plan.side > TileCut::kLargestSide) return "side";
+    Index3 count;
+    try {
+        count = plan.cut().tiles();
+    } catch (const InvalidInput& error) {
+        return error.what();
+    }
+    for (std::size_t n = 0; n < plan.tiles.size(); ++n) {
+        const Index3& tile = plan.tiles[n];
+        const bool isAscending = n == 0 || orderOf(plan.tiles[n - 1]) < orderOf(tile);
+        const bool isThere = tile[0] < count[0] && tile[1] < count[1] && tile[2] < count[2];
+        if (!isAscending || !isThere) return "tiles";
+    }
+    return "";
+}
 
 }  // namespace
 
@@ -230,9 +181,14 @@ std::string encodePlan(const GiantPlan& plan) {
 }
 
 GiantPlan decodePlan(std::string_view text, const std::string& name) {
-    const Json json = Json::parse(text, nullptr, false);
-    if (json.is_discarded()) refusePlan(name, "JSON");
-    return PlanReader(json, name).read();
+    try {
+        GiantPlan plan = planFrom(Json::parse(text));
+        if (const std::string fault = faultOf(plan); !fault.empty()) refusePlan(name, fault);
+        if (encodePlan(plan) != text) refusePlan(name, "not as it was written");
+        return plan;
+    } catch (const Json::exception&) {
+        refusePlan(name, "JSON");
+    }
 }
 
 std::string idOf(const Index3& place) {

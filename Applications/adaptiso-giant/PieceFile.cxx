@@ -1,13 +1,15 @@
 #include "adaptiso-giant/PieceFile.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <span>
+#include <type_traits>
 #include <unordered_map>
+#include <vector>
 
 #include "Common/Sha256.h"
 #include "adaptiso/Core/Errors.h"
@@ -24,16 +26,18 @@ static_assert(std::endian::native == std::endian::little, "pieces are little-end
 constexpr std::string_view kMagic = "ADAPTPC2";
 constexpr std::size_t kSumBytes = 64;
 constexpr std::uint64_t kLongestHeader = 1 << 16;
-constexpr std::size_t kComponentBytes = 32, kBorderBytes = 32, kEdgeBytes = 8, kPointBytes = 24,
-                      kNormalBytes = 12, kTriangleBytes = 12;
+static_assert(sizeof(PieceComponent) == 32 && sizeof(BorderVertex) == 32 && sizeof(Vec3) == 24 &&
+              sizeof(Normal) == 12);  // no gaps between what is written
 
 [[noreturn]] void refusePiece(const std::string& name, const std::string& what) {
     throw FileError(name + ": is damaged (" + what + "); remove it, and run its step again");
 }
 
-template <class T>
-void put(std::string& bytes, const T& value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+/// Appends rows as memory has them.
+template <class Row>
+void put(std::string& bytes, const std::vector<Row>& rows) {
+    static_assert(std::is_trivially_copyable_v<Row>);
+    bytes.append(reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(Row));
 }
 
 /// Appends the SHA-256 of the bytes from `begin` on.
@@ -60,11 +64,13 @@ class PieceReader {
 public:
     PieceReader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
-    template <class T>
-    T take() {
-        T value{};
-        std::memcpy(&value, takeBytes(sizeof value).data(), sizeof value);
-        return value;
+    /// Rows as memory has them. \pre  checked: there is room for them
+    template <class Row>
+    std::vector<Row> take(std::uint64_t count) {
+        std::vector<Row> rows(static_cast<std::size_t>(count));
+        const std::string_view bytes = takeBytes(rows.size() * sizeof(Row));
+        if (!bytes.empty()) std::memcpy(rows.data(), bytes.data(), bytes.size());
+        return rows;
     }
     std::string_view takeBytes(std::size_t count) {
         if (count > bytes_.size() - at_) refusePiece(name_, "truncated");
@@ -72,33 +78,16 @@ public:
         at_ += count;
         return taken;
     }
-    double takeFinite() {
-        const auto value = take<double>();
-        if (!std::isfinite(value)) refusePiece(name_, "a number is not finite");
-        return value;
+    void requireFinite(double sum) const {
+        if (!std::isfinite(sum)) refusePiece(name_, "a number is not finite");
     }
-    Vec3 takeVector() {
-        const double x = takeFinite(), y = takeFinite(), z = takeFinite();
-        return {x, y, z};
-    }
-    std::uint32_t takeNumber(std::int64_t count) {
-        const auto number = take<std::uint32_t>();
+    void requireBelow(std::uint64_t number, std::uint64_t count) const {
         if (number >= count) refusePiece(name_, "a number is out of range");
-        return number;
     }
     /// \pre the bytes from `begin` up to here are those summed
     void checkSum(std::size_t begin) {
         const std::string_view summed = bytes_.substr(begin, at_ - begin);
         if (takeBytes(kSumBytes) != sha256Of(summed)) refusePiece(name_, "checksum");
-    }
-    /// The file has room for so many elements.
-    std::int64_t countOf(const Json& header, const char* key, std::size_t bytesEach) const {
-        const Json* value = header.contains(key) ? &header.at(key) : nullptr;
-        if (value == nullptr || !value->is_number_unsigned() ||
-            value->get<std::uint64_t>() > (bytes_.size() - at_) / bytesEach) {
-            refusePiece(name_, key);
-        }
-        return value->get<std::int64_t>();
     }
 
     std::size_t at() const { return at_; }
@@ -111,79 +100,72 @@ private:
     std::size_t at_ = 0;
 };
 
-std::string textOf(const Json& header, const char* key, const std::string& name) {
-    if (!header.contains(key) || !header.at(key).is_string()) refusePiece(name, key);
-    return header.at(key).get<std::string>();
-}
+/// What the header says of the parts behind it.
+struct Counts {
+    std::uint64_t components, border, edges, points, triangles;
 
-/// How long the first part is, without its sum; \pre `bytes` has the header.
-std::size_t summaryBytes(const Json& header, std::size_t headerEnd) {
-    const auto count = [&](const char* key) { return header.at(key).get<std::size_t>(); };
-    return headerEnd + count("components") * kComponentBytes +
-           count("borderVertices") * kBorderBytes + count("borderEdges") * kEdgeBytes;
-}
-
-Json takeHeader(PieceReader& reader) {
-    if (reader.left() < kMagic.size() || reader.takeBytes(kMagic.size()) != kMagic) {
-        refusePiece(reader.name(), "no piece of adaptiso-giant");
+    std::uint64_t summaryBytes() const {
+        return components * sizeof(PieceComponent) + border * sizeof(BorderVertex) +
+               edges * sizeof(std::array<std::uint32_t, 2>);
     }
-    const auto length = reader.take<std::uint64_t>();
-    if (length > kLongestHeader) refusePiece(reader.name(), "header");
-    Json header = Json::parse(reader.takeBytes(static_cast<std::size_t>(length)), nullptr, false);
-    if (!header.is_object()) refusePiece(reader.name(), "header");
-    return header;
-}
+    std::uint64_t meshBytes() const {
+        return points * (sizeof(Vec3) + sizeof(Normal)) +
+               triangles * sizeof(std::array<std::uint32_t, 3>);
+    }
+};
 
-/// \param fileBytes  of the whole file
-PieceSummary takeSummary(PieceReader& reader, std::uint64_t fileBytes) {
-    const Json header = takeHeader(reader);
+/// \param fileBytes  of the whole file, which has room for all that the header counts
+Counts takeHeader(PieceReader& reader, std::uint64_t fileBytes, PieceSummary& summary) {
     const std::string& name = reader.name();
-    PieceSummary summary;
-    summary.plan = textOf(header, "plan", name);
-    summary.stage = textOf(header, "stage", name);
-    summary.id = textOf(header, "id", name);
-    summary.inputs = textOf(header, "inputs", name);
-    const auto countIn = [&](const char* key, std::size_t bytesEach) {
-        if (!header.contains(key) || !header.at(key).is_number_unsigned() ||
-            header.at(key).get<std::uint64_t>() > fileBytes / bytesEach) {
-            refusePiece(name, key);
+    if (reader.left() < kMagic.size() || reader.takeBytes(kMagic.size()) != kMagic) {
+        refusePiece(name, "no piece of adaptiso-giant");
+    }
+    const auto length = reader.take<std::uint64_t>(1).front();
+    if (length > kLongestHeader) refusePiece(name, "header");
+    try {
+        const Json header = Json::parse(reader.takeBytes(static_cast<std::size_t>(length)));
+        const auto count = [&](const char* key) {
+            const auto value = header.at(key).get_ref<const Json::number_unsigned_t&>();
+            if (value > fileBytes) refusePiece(name, key);
+            return value;
+        };
+        header.at("plan").get_to(summary.plan);
+        header.at("stage").get_to(summary.stage);
+        header.at("id").get_to(summary.id);
+        header.at("inputs").get_to(summary.inputs);
+        header.at("errorBoundMm").get_to(summary.errorBoundMm);
+        header.at("unchanged").get_to(summary.isUnchanged);
+        const Counts counts{count("components"), count("borderVertices"), count("borderEdges"),
+                            count("points"), count("triangles")};
+        if (reader.at() + counts.summaryBytes() + counts.meshBytes() + 2 * kSumBytes != fileBytes) {
+            refusePiece(name, "truncated");
         }
-        return header.at(key).get<std::int64_t>();
-    };
-    summary.points = countIn("points", kPointBytes + kNormalBytes);
-    summary.triangles = countIn("triangles", kTriangleBytes);
-    if (!header.contains("errorBoundMm") || !header.at("errorBoundMm").is_number() ||
-        !header.contains("unchanged") || !header.at("unchanged").is_boolean()) {
+        summary.points = static_cast<std::int64_t>(counts.points);
+        summary.triangles = static_cast<std::int64_t>(counts.triangles);
+        return counts;
+    } catch (const Json::exception&) {
         refusePiece(name, "header");
     }
-    summary.errorBoundMm = header.at("errorBoundMm").get<double>();
-    summary.isUnchanged = header.at("unchanged").get<bool>();
-    const std::int64_t components = reader.countOf(header, "components", kComponentBytes),
-                       border = reader.countOf(header, "borderVertices", kBorderBytes),
-                       edges = reader.countOf(header, "borderEdges", kEdgeBytes);
-    for (std::int64_t n = 0; n < components; ++n) {
-        PieceComponent& component = summary.components.emplace_back();
-        component.triangles = reader.take<std::int64_t>();
-        component.innerVertices = reader.take<std::int64_t>();
-        component.areaMm2 = reader.takeFinite();
-        component.volumeMm3 = reader.takeFinite();
-        if (component.triangles < 0 || component.triangles > summary.triangles ||
-            component.innerVertices < 0 || component.innerVertices > summary.points) {
-            refusePiece(name, "a component");
-        }
-    }
-    for (std::int64_t n = 0; n < border; ++n) {
-        BorderVertex& vertex = summary.border.emplace_back();
-        vertex.vertex = reader.takeNumber(summary.points);
-        vertex.component = reader.takeNumber(components);
-        vertex.index = reader.takeVector();
-    }
-    for (std::int64_t n = 0; n < edges; ++n) {
-        const std::uint32_t a = reader.takeNumber(border), b = reader.takeNumber(border);
-        summary.borderEdges.push_back({a, b});
-    }
+}
+
+void takeSummary(PieceReader& reader, const Counts& counts, PieceSummary& summary) {
+    summary.components = reader.take<PieceComponent>(counts.components);
+    summary.border = reader.take<BorderVertex>(counts.border);
+    summary.borderEdges = reader.take<std::array<std::uint32_t, 2>>(counts.edges);
     reader.checkSum(0);
-    return summary;
+    for (const PieceComponent& component : summary.components) {
+        reader.requireFinite(component.areaMm2 + component.volumeMm3);
+        reader.requireBelow(static_cast<std::uint64_t>(component.triangles), counts.triangles + 1);
+        reader.requireBelow(static_cast<std::uint64_t>(component.innerVertices), counts.points + 1);
+    }
+    for (const BorderVertex& vertex : summary.border) {
+        reader.requireBelow(vertex.vertex, counts.points);
+        reader.requireBelow(vertex.component, counts.components);
+        reader.requireFinite(vertex.index.x + vertex.index.y + vertex.index.z);
+    }
+    for (const auto& [a, b] : summary.borderEdges) {
+        reader.requireBelow(std::max(a, b), counts.border);
+    }
 }
 
 std::string bytesOf(const std::filesystem::path& file, std::uint64_t begin, std::uint64_t count) {
@@ -237,32 +219,22 @@ std::string encodePiece(const Piece& piece) {
     const PieceSummary& summary = piece.summary;
     const std::string header = headerOf(summary).dump();
     std::string bytes(kMagic);
-    bytes.reserve(header.size() + summary.border.size() * (kBorderBytes + kEdgeBytes) +
-                  piece.mesh.points.size() * (kPointBytes + kNormalBytes) +
-                  piece.mesh.triangles.size() * kTriangleBytes + 4096);
-    put(bytes, std::uint64_t{header.size()});
+    std::vector<std::array<std::uint32_t, 3>> corners;
+    corners.reserve(piece.mesh.triangles.size());
+    for (const auto& [a, b, c] : piece.mesh.triangles) {
+        corners.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                           static_cast<std::uint32_t>(c)});
+    }
+    put(bytes, std::vector<std::uint64_t>{header.size()});
     bytes += header;
-    for (const PieceComponent& c : summary.components) {
-        put(bytes, c.triangles);
-        put(bytes, c.innerVertices);
-        put(bytes, c.areaMm2);
-        put(bytes, c.volumeMm3);
-    }
-    for (const BorderVertex& v : summary.border) {
-        put(bytes, v.vertex);
-        put(bytes, v.component);
-        for (int a = 0; a < 3; ++a) put(bytes, v.index[a]);
-    }
-    for (const auto& edge : summary.borderEdges) put(bytes, edge);
+    put(bytes, summary.components);
+    put(bytes, summary.border);
+    put(bytes, summary.borderEdges);
     putSum(bytes, 0);
     const std::size_t begin = bytes.size();
-    for (const Vec3& p : piece.mesh.points) {
-        for (int a = 0; a < 3; ++a) put(bytes, p[a]);
-    }
-    for (const Normal& n : piece.mesh.normals) put(bytes, std::array{n.x, n.y, n.z});
-    for (const Triangle& t : piece.mesh.triangles) {
-        for (const VertexId v : t) put(bytes, static_cast<std::uint32_t>(v));
-    }
+    put(bytes, piece.mesh.points);
+    put(bytes, piece.mesh.normals);
+    put(bytes, corners);
     putSum(bytes, begin);
     return bytes;
 }
@@ -270,30 +242,19 @@ std::string encodePiece(const Piece& piece) {
 Piece decodePiece(std::string_view bytes, const std::string& name) {
     PieceReader reader(bytes, name);
     Piece piece;
-    piece.summary = takeSummary(reader, bytes.size());
+    const Counts counts = takeHeader(reader, bytes.size(), piece.summary);
+    takeSummary(reader, counts, piece.summary);
     const std::size_t begin = reader.at();
-    const auto points = static_cast<std::size_t>(piece.summary.points),
-               triangles = static_cast<std::size_t>(piece.summary.triangles);
-    if (reader.left() !=
-        points * (kPointBytes + kNormalBytes) + triangles * kTriangleBytes + kSumBytes) {
-        refusePiece(name, "truncated");
-    }
-    piece.mesh.points.reserve(points);
-    for (std::size_t n = 0; n < points; ++n) piece.mesh.points.push_back(reader.takeVector());
-    for (std::size_t n = 0; n < points; ++n) {
-        const auto [x, y, z] = reader.take<std::array<float, 3>>();
-        if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) {
-            refusePiece(name, "a number is not finite");
-        }
-        piece.mesh.normals.push_back({x, y, z});
-    }
-    for (std::size_t n = 0; n < triangles; ++n) {
-        const std::int64_t count = piece.summary.points;
-        const std::uint32_t a = reader.takeNumber(count), b = reader.takeNumber(count),
-                            c = reader.takeNumber(count);
-        piece.mesh.triangles.push_back({a, b, c});
+    TriangleMesh& mesh = piece.mesh;
+    mesh.points = reader.take<Vec3>(counts.points);
+    mesh.normals = reader.take<Normal>(counts.points);
+    for (const auto& [a, b, c] : reader.take<std::array<std::uint32_t, 3>>(counts.triangles)) {
+        reader.requireBelow(std::max({a, b, c}), counts.points);
+        mesh.triangles.push_back({a, b, c});
     }
     reader.checkSum(begin);
+    for (const Vec3& p : mesh.points) reader.requireFinite(p.x + p.y + p.z);
+    for (const Normal& n : mesh.normals) reader.requireFinite(n.x + n.y + n.z);
     return piece;
 }
 
@@ -311,19 +272,14 @@ PieceSummary readPieceSummary(const std::filesystem::path& file) {
     std::memcpy(&length, begin.data() + kMagic.size(), sizeof length);
     if (length > kLongestHeader || length > size - kBegin) refusePiece(name, "header");
     const std::string head = bytesOf(file, 0, kBegin + length);
+    PieceSummary summary;
     PieceReader headReader(head, name);
-    const Json header = takeHeader(headReader);
-    for (const char* key : {"components", "borderVertices", "borderEdges"}) {
-        if (!header.contains(key) || !header.at(key).is_number_unsigned() ||
-            header.at(key).get<std::uint64_t>() > size) {
-            refusePiece(name, key);
-        }
-    }
-    const std::uint64_t end = summaryBytes(header, headReader.at()) + kSumBytes;
-    if (end > size) refusePiece(name, "truncated");
-    const std::string bytes = bytesOf(file, 0, end);
-    PieceReader reader(bytes, name);
-    return takeSummary(reader, size);
+    const Counts counts = takeHeader(headReader, size, summary);
+    const std::string rows = bytesOf(file, 0, headReader.at() + counts.summaryBytes() + kSumBytes);
+    PieceReader reader(rows, name);
+    takeHeader(reader, size, summary);
+    takeSummary(reader, counts, summary);
+    return summary;
 }
 
 }  // namespace adaptiso::giant
