@@ -329,7 +329,7 @@ void takeBackShift(const LabelGrid& grid, const DualComplex& complex,
                    const std::vector<Room>& rooms, const Neighbours& neighbours,
                    std::vector<Vec3>& points) {
     constexpr double kFreeShift = 0.07;  // voxels: tubes of radius 4 keep their true volume
-    constexpr int kRounds = 20;          // steps of averaging: some 4 voxels around
+    constexpr int kSteps = 20;           // steps of averaging: some 4 voxels around
     const std::vector<Local> normals = wallNormals(complex, neighbours, points);
     const auto hasNormal = [&](std::size_t v) {
         return normals[v][0] != 0 || normals[v][1] != 0 || normals[v][2] != 0;
@@ -338,7 +338,7 @@ void takeBackShift(const LabelGrid& grid, const DualComplex& complex,
     forEachStart(grid, complex, rooms, [&](std::size_t v, const Vec3& start) {
         shift[v] = static_cast<float>(dot(points[v] - start, pointOf(normals[v])));
     });
-    for (int round = 0; round < kRounds; ++round) {
+    for (int step = 0; step < kSteps; ++step) {
         parallelForPieces(complex.groupCount, kPiece, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t v = begin; v < end; ++v) {
                 if (!hasNormal(v)) continue;

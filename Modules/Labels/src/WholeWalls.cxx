@@ -413,11 +413,8 @@ WholeWalls::Made WholeWalls::simplifyOne(const CubeCut& cut, const Lists& lists,
 }
 
 void WholeWalls::join(const Lists& lists, std::vector<Made>& made) {
-    std::size_t vertices = 0, inCubes = 0;
-    for (const Made& each : made) {
-        vertices += each.points.size();
-        inCubes += each.triangles.size();
-    }
+    std::size_t vertices = 0;
+    for (const Made& each : made) vertices += each.points.size();
     std::vector<Vec3> newPoints;
     std::vector<WallTriangle> newTriangles;
     std::vector<Id> vertexNow(points().size(), kNone), triangleNow(triangles().size(), kNone);
