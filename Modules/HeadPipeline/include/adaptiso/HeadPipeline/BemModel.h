@@ -170,10 +170,9 @@ struct BemModel {
     std::vector<std::vector<Vec3>> seenMm;  ///< as HeadBoundaries has it
     /// Surfaces that were given, where all are made anew, until the model is there.
     std::vector<TriangleMesh> given;
-    std::optional<SegmentedHead>
-        segmented;  ///< until the model is there; kept for a skull with holes
-    std::optional<SkullComparison> skull;  ///< of a model made from a segmentation
-    std::optional<HeadShape> headShape;    ///< LPS mm; if wanted, and there is a model with a skin
+    std::optional<SegmentedHead> segmented;  ///< until there is a model; of a skull with holes on
+    std::optional<SkullComparison> skull;    ///< of a model made from a segmentation
+    std::optional<HeadShape> headShape;  ///< LPS mm; if wanted, and there is a model with a skin
     std::optional<BemTetrahedra> tetrahedra;  ///< if wanted, and there is a model
     std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
     std::optional<BemSources> sources{};      ///< if wanted, and there is a model
