@@ -249,11 +249,6 @@ SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
 
 namespace {
 
-/// A triangle is upright when its normal's cosine to the direction is larger than this. A fan with
-/// more triangles than that counts as not clear.
-constexpr double kLeastCosine = 0.02;
-constexpr std::int64_t kMostTriangles = 24;
-
 /// Puts the triangles around a vertex into one ring.
 /// \return false for no such fan
 bool sortRound(std::span<std::array<std::uint32_t, 2>> sectors) {
@@ -266,10 +261,13 @@ bool sortRound(std::span<std::array<std::uint32_t, 2>> sectors) {
     return sectors.back()[1] == sectors.front()[0];
 }
 
-/// \param spokes  to the corners of a ring, seen from the vertex
-bool goRoundOnce(std::span<const Vec3> spokes) {
+}  // namespace
+
+bool goesRoundOnce(std::span<const Vec3> spokes) {
+    // a triangle is upright when its normal's cosine to the direction is larger
+    constexpr double kLeastCosine = 0.02;
     const auto next = [&](std::size_t i) { return spokes[i + 1 < spokes.size() ? i + 1 : 0]; };
-    std::array<Vec3, kMostTriangles> area2;
+    std::array<Vec3, kMostOfFan> area2;
     Vec3 axis;
     for (std::size_t i = 0; i < spokes.size(); ++i) {
         area2[i] = cross(spokes[i], next(i));
@@ -289,17 +287,14 @@ bool goRoundOnce(std::span<const Vec3> spokes) {
     return rounds == 1;
 }
 
-}  // namespace
-
 void ClearFans::prove(std::span<const Vec3> points, Sectors sectors) {
     constexpr std::int64_t kPiece = 4096;
     const auto isClear = [&](std::int64_t v) {
         const std::span<Sector> ring = sectors.of(static_cast<std::size_t>(v));
-        const std::int64_t count = std::ssize(ring);
-        if (count < 3 || count > kMostTriangles || !sortRound(ring)) return false;
-        std::array<Vec3, kMostTriangles> spokes;
-        for (std::int64_t i = 0; i < count; ++i) spokes[i] = points[ring[i][0]] - points[v];
-        return goRoundOnce({spokes.data(), ring.size()});
+        if (ring.size() < 3 || ring.size() > kMostOfFan || !sortRound(ring)) return false;
+        std::array<Vec3, kMostOfFan> spokes;
+        for (std::size_t i = 0; i < ring.size(); ++i) spokes[i] = points[ring[i][0]] - points[v];
+        return goesRoundOnce({spokes.data(), ring.size()});
     };
     parallelForPieces(std::ssize(isClear_), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t v = begin; v < end; ++v) {

@@ -180,10 +180,6 @@ inline constexpr int kRidgeMostSteps = 16;
 inline constexpr double kNearCube = 2, kNearSides = 2;
 /// Voxels that proofs leave between triangles.
 inline constexpr double kProofGap = 1e-4;
-/// A fan of triangles is proved clear by one direction if each is more upright to it than this
-/// cosine, and there are no more of them.
-inline constexpr double kFanCosine = 0.02;
-inline constexpr int kFanMost = 24;
 
 // ---- The proof of the bound (DistanceProof) ----
 

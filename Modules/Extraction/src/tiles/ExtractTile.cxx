@@ -80,13 +80,13 @@ public:
             BrickMesher mesher;
             FineSurface fine;
         };
-        PerThread<Tools> tools([&] { return Tools{BrickMesher(sampler_, grid_), {}}; });
+        PerThread<Tools> tools([&] { return Tools{BrickMesher(sampler_, grid_, false), {}}; });
         parallelForPieces(std::ssize(bricks_), 1, [&](std::int64_t b, std::int64_t) {
             Brick brick = bricks_[b];
             findBlocks(brick);
             if (brick.blocks.empty()) return;
             Tools& mine = tools.local();
-            mine.mesher.meshWithoutSheets(brick, mine.fine);
+            mine.mesher.mesh(brick, mine.fine);
             pieces[b] = pieceOf(mine.fine);
         });
         return join(pieces);

@@ -98,44 +98,6 @@ TEST(HalfEdges, AreListedByTheirVertexInAscendingOrder) {
     EXPECT_EQ(listed, 3 * mesh.triangles.size());
 }
 
-// Triangles of any kind, manifold or not, that come, change and go.
-TEST(HalfEdges, AreAfterChangesWhatTheyWouldBeMadeAnew) {
-    std::mt19937 random(3);
-    TriangleMesh mesh;
-    mesh.points.resize(12);
-    const auto anyTriangle = [&] {
-        const auto any = [&] { return static_cast<VertexId>(random() % mesh.points.size()); };
-        return Triangle{any(), any(), any()};
-    };
-    for (int t = 0; t < 30; ++t) mesh.triangles.push_back(anyTriangle());
-    HalfEdges halfEdges;
-    halfEdges.assign(mesh.points.size(), mesh.triangles);
-    std::vector<VertexId> twin;
-    halfEdges.match(twin);
-    for (int n = 0; n < 200; ++n) {
-        const auto before = std::ssize(mesh.triangles);
-        mesh.points.resize(12 + n / 40);
-        mesh.triangles.resize(20 + random() % 20);
-        std::set<VertexId> changed;
-        for (auto t = before; t < std::ssize(mesh.triangles); ++t) changed.insert(t);
-        for (auto t = std::ssize(mesh.triangles); t < before; ++t) changed.insert(t);
-        for (int i = 0; i < n % 4; ++i) {
-            changed.insert(static_cast<VertexId>(random() % mesh.triangles.size()));
-        }
-        for (const VertexId t : changed) {
-            if (t < std::ssize(mesh.triangles)) mesh.triangles[t] = anyTriangle();
-        }
-        halfEdges.update(mesh.points.size(), mesh.triangles,
-                         std::vector<VertexId>(changed.begin(), changed.end()), twin);
-        ASSERT_EQ(twin, twinsOf(mesh)) << n;
-        HalfEdges anew;
-        anew.assign(mesh.points.size(), mesh.triangles);
-        for (VertexId v = 0; v < std::ssize(mesh.points); ++v) {
-            ASSERT_TRUE(std::ranges::equal(halfEdges.from(v), anew.from(v))) << n;
-        }
-    }
-}
-
 // Beyond 32,768 triangles several threads work.
 TEST(HalfEdges, AreTheSameForManyTriangles) {
     const TriangleMesh one = withDuplicateTriangle(withHole(torusMesh(20, 10, 3, 1)));

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <random>
 #include <set>
 
 #include "adaptiso/SurfaceProof/OrderedBuckets.h"
@@ -57,38 +56,6 @@ TEST(OrderedBuckets, HoldWhatIsGivenInAscendingOrder) {
 
 TEST(OrderedBuckets, AreEmptyByDefault) {
     EXPECT_EQ(Buckets().count(), 0U);
-}
-
-// Random items go, others come, buckets come and go: as if all had been given anew.
-TEST(OrderedBuckets, UpdateAsIfGivenAnew) {
-    std::mt19937 random(1);
-    for (int n = 0; n < 200; ++n) {
-        const std::size_t before = 1 + random() % 40, after = 1 + random() % 40;
-        Buckets buckets;
-        buckets.assign(before, random() % 300, Givers{before});
-        Lists expected = listsOf(buckets);
-        const auto divisor = static_cast<std::uint32_t>(2 + random() % 5);
-        const auto isGone = [&](std::uint32_t item) { return item % divisor == 0; };
-        std::set<std::size_t> expectedChanged;
-        for (auto& [bucket, items] : expected) {
-            if (bucket < after && std::erase_if(items, isGone) > 0) expectedChanged.insert(bucket);
-        }
-        std::erase_if(expected,
-                      [&](const auto& list) { return list.first >= after || list.second.empty(); });
-        std::set<std::pair<std::size_t, std::uint32_t>> added;
-        const auto many = static_cast<std::uint32_t>(random() % 30);
-        for (std::uint32_t i = 0; i < many; ++i) {
-            const auto& [bucket, item] = *added.insert({random() % after, 1000 + i}).first;
-            expected[bucket].insert(item);
-            expectedChanged.insert(bucket);
-        }
-        const std::vector<std::pair<std::size_t, std::uint32_t>> list(added.begin(), added.end());
-        std::vector<std::size_t> changed;
-        buckets.update(after, isGone, list, [&](std::size_t bucket) { changed.push_back(bucket); });
-        EXPECT_EQ(buckets.count(), after);
-        EXPECT_EQ(listsOf(buckets), expected);
-        EXPECT_EQ(changed, std::vector(expectedChanged.begin(), expectedChanged.end()));
-    }
 }
 
 }  // namespace

@@ -82,44 +82,41 @@ void addTriangles(const LatticeSampler& sampler, const Index3& sample, const Box
 
 Bricks::Bricks(const BlockGrid& grid, const std::vector<std::uint32_t>& blocks) : grid_(grid) {
     const std::int64_t perSide = Brick::kSide / grid.blockSize;
-    for (int a = 0; a < 3; ++a) places_[a] = (grid.blocks[a] + perSide - 1) / perSide;
-    numberAt_.assign(static_cast<std::size_t>(places_[0] * places_[1] * places_[2]), kNone);
+    constexpr std::int64_t kNone = -1;
+    Index3 places;
+    for (int a = 0; a < 3; ++a) places[a] = (grid.blocks[a] + perSide - 1) / perSide;
+    std::vector<std::int64_t> numberAt(static_cast<std::size_t>(places[0] * places[1] * places[2]),
+                                       kNone);
     const auto placeOf = [&](std::int64_t b) {
         return Index3{b % grid.blocks[0] / perSide, b / grid.blocks[0] % grid.blocks[1] / perSide,
                       b / (grid.blocks[0] * grid.blocks[1]) / perSide};
     };
     const auto slotOf = [&](const Index3& p) {
-        return p[0] + places_[0] * (p[1] + places_[1] * p[2]);
+        return p[0] + places[0] * (p[1] + places[1] * p[2]);
     };
-    for (const std::uint32_t block : blocks) numberAt_[slotOf(placeOf(block))] = 0;
-    for (std::int64_t slot = 0; slot < static_cast<std::int64_t>(numberAt_.size()); ++slot) {
-        if (numberAt_[slot] == kNone) continue;
-        numberAt_[slot] = count();
+    for (const std::uint32_t block : blocks) numberAt[slotOf(placeOf(block))] = 0;
+    for (std::int64_t slot = 0; slot < std::ssize(numberAt); ++slot) {
+        if (numberAt[slot] == kNone) continue;
+        numberAt[slot] = count();
         Brick& brick = bricks_.emplace_back();
-        brick.low = {slot % places_[0] * Brick::kSide,
-                     slot / places_[0] % places_[1] * Brick::kSide,
-                     slot / (places_[0] * places_[1]) * Brick::kSide};
+        brick.low = {slot % places[0] * Brick::kSide, slot / places[0] % places[1] * Brick::kSide,
+                     slot / (places[0] * places[1]) * Brick::kSide};
     }
     for (const std::uint32_t block : blocks) {
-        bricks_[numberAt_[slotOf(placeOf(block))]].blocks.push_back(block);
+        bricks_[numberAt[slotOf(placeOf(block))]].blocks.push_back(block);
     }
 }
 
-std::int64_t Bricks::at(const Index3& place) const {
-    for (int a = 0; a < 3; ++a) {
-        if (place[a] < 0 || place[a] >= places_[a]) return kNone;
-    }
-    return numberAt_[place[0] + places_[0] * (place[1] + places_[1] * place[2])];
-}
-
-BrickMesher::BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid)
+BrickMesher::BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid, bool findsSheets)
     : sampler_(sampler),
       grid_(grid),
+      findsSheets_(findsSheets),
       vertexOnEdge_(3 * std::size_t{kPositions} * kPositions * kPositions),
       rows_(std::size_t{kLargestBlock + 1 + 2 * kMargin} * (kLargestBlock + 1 + 2 * kMargin)) {}
 
-void BrickMesher::mesh(const Brick& brick, const std::function<bool(const FineSurface&)>& wantsGaps,
-                       FineSurface& surface) {
+void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
+    for (const std::size_t slot : slots_) vertexOnEdge_[slot] = 0;
+    slots_.clear();
     surface.vertices.clear();
     surface.triangles.clear();
     surface.cellsSeen = surface.cellsCrossed = 0;
@@ -129,20 +126,6 @@ void BrickMesher::mesh(const Brick& brick, const std::function<bool(const FineSu
     surface.middles = static_cast<std::size_t>(
         std::count_if(surface.vertices.begin(), surface.vertices.end(),
                       [](const FineVertex& v) { return v.edge.axis() == kCellCentre; }));
-    if (wantsGaps(surface)) findGaps(brick, surface);
-    forget(brick, surface);
-}
-
-void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
-    mesh(
-        brick, [](const FineSurface&) { return true; }, surface);
-}
-
-void BrickMesher::meshWithoutSheets(const Brick& brick, FineSurface& surface) {
-    findsSheets_ = false;
-    mesh(
-        brick, [](const FineSurface&) { return false; }, surface);
-    findsSheets_ = true;
 }
 
 void BrickMesher::findGaps(const Brick& brick, FineSurface& surface) const {
@@ -172,13 +155,6 @@ float BrickMesher::gapOf(const Brick& brick, const FineSurface& surface,
     return static_cast<float>(std::abs(other - along));
 }
 
-void BrickMesher::forget(const Brick& brick, const FineSurface& surface) {
-    for (const FineVertex& vertex : surface.vertices) {
-        if (vertex.edge.axis() == kCellCentre) continue;
-        vertexOnEdge_[edgeSlot(positionOf(vertex.edge, brick), vertex.edge.axis())] = 0;
-    }
-}
-
 /// How many cells of a block lie in the volume, by axis.
 std::array<int, 3> BrickMesher::cellsOf(std::uint32_t block) const {
     const int n = grid_.blockSize;
@@ -198,8 +174,10 @@ std::uint32_t BrickMesher::vertexOn(const Brick& brick, const std::array<int, 3>
     const int corner = lowCorner(edge), axis = edgeAxis(edge);
     std::array<int, 3> p{};
     for (int a = 0; a < 3; ++a) p[a] = cell[a] + (corner >> a & 1);
-    std::uint32_t& slot = vertexOnEdge_[edgeSlot(p, axis)];
+    const std::size_t at = edgeSlot(p, axis);
+    std::uint32_t& slot = vertexOnEdge_[at];
     if (slot == 0) {
+        slots_.push_back(at);
         slot = static_cast<std::uint32_t>(surface.vertices.size() + 1);
         const Index3 lattice{brick.low[0] + p[0], brick.low[1] + p[1], brick.low[2] + p[2]};
         FineVertex vertex;

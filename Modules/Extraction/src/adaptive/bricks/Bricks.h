@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -25,19 +24,12 @@ class Bricks {
 public:
     Bricks(const BlockGrid& grid, const std::vector<std::uint32_t>& blocks);
 
-    static constexpr std::int64_t kNone = -1;
-
     const BlockGrid& grid() const { return grid_; }
     std::int64_t count() const { return static_cast<std::int64_t>(bricks_.size()); }
     const Brick& operator[](std::int64_t number) const { return bricks_[number]; }
 
-    /// The brick at a place (lattice position / Brick::kSide), or kNone.
-    std::int64_t at(const Index3& place) const;
-
 private:
     BlockGrid grid_;
-    Index3 places_{};
-    std::vector<std::int64_t> numberAt_;
     std::vector<Brick> bricks_;
 };
 
@@ -70,19 +62,15 @@ struct FineSurface {
 /// Makes fine surfaces brick by brick; keeps its working memory between them.
 class BrickMesher {
 public:
-    explicit BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid);
+    /// \param findsSheets  false: FineVertex::isSingleSheet means nothing
+    BrickMesher(const LatticeSampler& sampler, const BlockGrid& grid, bool findsSheets = true);
 
-    /// The same brick always gives the same vertices and triangles in the same order.
-    /// \param wantsGaps  asked of the surface with all but FineVertex::gap; these are looked for
-    ///                   where it says so
-    void mesh(const Brick& brick, const std::function<bool(const FineSurface&)>& wantsGaps,
-              FineSurface& surface);
-
-    /// The same with all gaps.
+    /// All but FineVertex::gap. The same brick always gives the same vertices and triangles in the
+    /// same order.
     void mesh(const Brick& brick, FineSurface& surface);
 
-    /// The same, when nobody asks for FineVertex::isSingleSheet and FineVertex::gap.
-    void meshWithoutSheets(const Brick& brick, FineSurface& surface);
+    /// Adds the gaps. \pre mesh() made the surface, last and of this brick
+    void findGaps(const Brick& brick, FineSurface& surface) const;
 
 private:
     void meshBlock(const Brick& brick, std::uint32_t block, FineSurface& surface);
@@ -90,14 +78,13 @@ private:
     std::uint32_t vertexOn(const Brick& brick, const std::array<int, 3>& cell, int edge,
                            bool isSingle, FineSurface& surface);
     unsigned joinedFaces(const Index3& sample, unsigned ambiguous) const;
-    void findGaps(const Brick& brick, FineSurface& surface) const;
     float gapOf(const Brick& brick, const FineSurface& surface, const FineVertex& vertex) const;
-    void forget(const Brick& brick, const FineSurface& surface);
 
     const LatticeSampler& sampler_;
     const BlockGrid& grid_;
-    bool findsSheets_ = true;
-    ZeroedTable vertexOnEdge_;  ///< number + 1
+    bool findsSheets_;
+    ZeroedTable vertexOnEdge_;        ///< number + 1, of the last brick
+    std::vector<std::size_t> slots_;  ///< of it that are not 0
     std::vector<std::uint32_t> rows_;
 };
 

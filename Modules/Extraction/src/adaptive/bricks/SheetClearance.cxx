@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -16,35 +19,21 @@ struct Place {
     std::array<float, 3> point, normal;
 };
 
-/// Points by cubes of the lattice, a voxel wide.
+/// Points by cubes of the lattice, a voxel wide, hashed: those of other cubes that come with a
+/// cube's are farther than all that is asked for.
 class Cubes {
 public:
     Cubes(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
           const MetricFrame& frame)
-        : frame_(frame) {
-        std::vector<Index3> cubes;
-        cubes.reserve(points.size());
-        Index3 high{};
-        for (const Vec3& p : points) {
-            const Index3 cube = cubeAt(p);
-            for (int a = 0; a < 3; ++a) {
-                low_[a] = cubes.empty() ? cube[a] : std::min(low_[a], cube[a]);
-                high[a] = cubes.empty() ? cube[a] : std::max(high[a], cube[a]);
+        : frame_(frame), mask_(std::bit_ceil(4 * points.size() + 4) - 1) {
+        std::vector<std::uint32_t> slots;
+        slots.reserve(points.size());
+        for (const Vec3& p : points) slots.push_back(static_cast<std::uint32_t>(slotOf(cubeAt(p))));
+        places_.assign(mask_ + 1, [&](const auto& give) {
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                give(slots[i], placeOf(points[i], normals[i]));
             }
-            cubes.push_back(cube);
-        }
-        for (int a = 0; a < 3; ++a) {  // an empty cube on every side
-            --low_[a];
-            count_[a] = high[a] - low_[a] + 2;
-        }
-        std::vector<Place> places(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) places[i] = placeOf(points[i], normals[i]);
-        places_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]),
-                       [&](const auto& give) {
-                           for (std::size_t i = 0; i < points.size(); ++i) {
-                               give(number(cubes[i]), places[i]);
-                           }
-                       });
+        });
     }
 
     static Place placeOf(const Vec3& p, const Vec3& normal) {
@@ -57,19 +46,23 @@ public:
     float nearestOther(const Vec3& point, const Vec3& normal, float most) const {
         const Place own = placeOf(point, normal);
         const Index3 cube = cubeAt(point);
-        for (std::int64_t z = -1; z <= 1; ++z) {
-            for (std::int64_t y = -1; y <= 1; ++y) {
-                const std::size_t row = number({cube[0], cube[1] + y, cube[2] + z});
-                for (const Place& other : places_.of(row - 1, row + 2)) {
-                    float squared = 0, cosine = 0;
-                    for (int a = 0; a < 3; ++a) {
-                        const float d = other.point[a] - own.point[a];
-                        squared += d * d;
-                        cosine += other.normal[a] * own.normal[a];
-                    }
-                    most = cosine < kOtherSheetCosine ? std::min(most, squared) : most;
+        const auto lookAt = [&](std::span<const Place> others) {
+            for (const Place& other : others) {
+                float squared = 0, cosine = 0;
+                for (int a = 0; a < 3; ++a) {
+                    const float d = other.point[a] - own.point[a];
+                    squared += d * d;
+                    cosine += other.normal[a] * own.normal[a];
                 }
+                most = cosine < kOtherSheetCosine ? std::min(most, squared) : most;
             }
+        };
+        for (int n = 0; n < 9; ++n) {
+            const std::size_t begin =
+                                  slotOf({cube[0] - 1, cube[1] + n % 3 - 1, cube[2] + n / 3 - 1}),
+                              end = begin + 3, slots = mask_ + 1;
+            lookAt(places_.of(begin, std::min(end, slots)));
+            if (end > slots) lookAt(places_.of(0, end - slots));
         }
         return most;
     }
@@ -81,13 +74,14 @@ private:
                 static_cast<std::int64_t>(std::floor(index.y)),
                 static_cast<std::int64_t>(std::floor(index.z))};
     }
-    std::size_t number(const Index3& c) const {
-        return static_cast<std::size_t>(
-            c[0] - low_[0] + count_[0] * (c[1] - low_[1] + count_[1] * (c[2] - low_[2])));
+    /// Cubes in a row have slots in a row.
+    std::size_t slotOf(const Index3& c) const {
+        const auto at = [&](int a) { return static_cast<std::size_t>(c[a]); };
+        return (at(0) + 40503 * at(1) + 2654435761 * at(2)) & mask_;
     }
 
     const MetricFrame& frame_;
-    Index3 low_{}, count_{};
+    std::size_t mask_;
     Buckets<Place, std::uint32_t> places_;
 };
 
@@ -99,10 +93,16 @@ void SheetClearance::fillIn(const std::vector<Vec3>& points, const std::vector<V
         return;
     const Cubes cubes(points, normals, frame);
     const auto unit = static_cast<float>(frame.narrowestMm());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (clearance[i] == kAlone) continue;
-        clearance[i] = of(std::sqrt(cubes.nearestOther(points[i], normals[i], unit * unit)), frame);
-    }
+    constexpr std::int64_t kPiece = 1 << 12;
+    const auto fill = [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) {
+            if (clearance[i] == kAlone) continue;
+            clearance[i] =
+                of(std::sqrt(cubes.nearestOther(points[i], normals[i], unit * unit)), frame);
+        }
+    };
+    // a brick's: its thread must not begin another brick meanwhile
+    isolated([&] { parallelForPieces(std::ssize(points), kPiece, fill); });
 }
 
 }  // namespace adaptiso::detail

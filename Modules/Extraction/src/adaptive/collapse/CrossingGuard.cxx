@@ -7,6 +7,7 @@
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Geometry.h"
 #include "adaptiso/MeshQuality/Certificate.h"
+#include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "adaptive/Parameters.h"
 
 namespace adaptiso::detail {
@@ -303,54 +304,22 @@ bool CrossingGuard::foldsBack(const ChangedStar& changed) const {
     return false;
 }
 
-/// The triangles around a vertex of the ring share no more than it and their edges: seen along one
-/// direction all are upright and go round the vertex once.
-/// \pre the star's old triangles carry the stamp, and no others
+/// The triangles around a vertex of the ring share no more than it and their edges.
 bool CrossingGuard::fanIsClear(const ChangedStar& changed, int at) const {
     const Star& star = changed.star;
     const std::uint32_t r = star.ring[at];
-    if (changed.star.isOpen || !topology_.isMovable(r) || topology_.isOnBorder(r)) return false;
+    if (star.isOpen || !topology_.isMovable(r) || topology_.isOnBorder(r)) return false;
     const Vec3 centre = patch_.points[r];
-    struct Sector {
-        Vec3 from, to, area2;
-    };
-    std::array<Sector, kFanMost> sectors;
-    int count = 0;
-    Vec3 axis;
-    const auto add = [&](const Vec3& from, const Vec3& to) {
-        const Vec3 area2 = cross(from, to);
-        sectors[count++] = {from, to, area2};
-        axis += area2;
-    };
-    const int before = (at + star.count - 1) % star.count, after = (at + 1) % star.count;
-    const Vec3 toVertex = changed.vertex - centre;
-    add(patch_.points[star.ring[after]] - centre, toVertex);
-    add(toVertex, patch_.points[star.ring[before]] - centre);
-    const std::uint32_t begin = topology_.leaving(r);
-    std::uint32_t h = begin;
-    do {
-        const std::uint32_t inwards = PatchTopology::previous(h);
-        if (!isSeen(h / 3)) {
-            if (count == kFanMost) return false;
-            add(patch_.points[topology_.to(h)] - centre,
-                patch_.points[topology_.from(inwards)] - centre);
-        }
-        h = topology_.twin(inwards);
-    } while (h != begin);
-    const double least = kFanCosine * norm(axis);
-    for (int i = 0; i < count; ++i) {
-        const Sector& s = sectors[i];
-        const double upright = dot(s.area2, axis);
-        if (!(upright > 0 && upright * upright > least * least * squaredNorm(s.area2))) {
-            return false;
-        }
-        // a second way round would pass the spoke again
-        if (i >= 2 && dot(cross(s.from, toVertex), axis) >= 0 &&
-            dot(cross(toVertex, s.to), axis) >= 0) {
-            return false;
-        }
+    std::array<Vec3, kMostOfFan> spokes{changed.vertex - centre};
+    std::size_t count = 1;
+    // round from the star to the star
+    const auto next = [&](std::uint32_t h) { return topology_.twin(PatchTopology::previous(h)); };
+    const int before = (at + star.count - 1) % star.count;
+    for (std::uint32_t h = next(topology_.leavingIn(star.triangle[before], r));; h = next(h)) {
+        if (count == kMostOfFan) return false;
+        spokes[count++] = patch_.points[topology_.to(h)] - centre;
+        if (h / 3 == star.triangle[at]) return goesRoundOnce({spokes.data(), count});
     }
-    return true;
 }
 
 /// The star's triangles among themselves.

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
@@ -168,61 +167,14 @@ std::vector<Vec3> MeshSurface::addPoints(const Around& around, SimplifiedSurface
     return areas;
 }
 
-/// To other sheets, of each point.
-std::vector<std::uint8_t> MeshSurface::clearancesOf(const SimplifiedSurface& surface,
-                                                    const std::vector<Vec3>& areas) const {
-    const PatchCubes cubes(surface, {}, frame());
-    std::vector<std::uint32_t> cubeOf(surface.points.size());
-    parallelForPieces(std::ssize(cubeOf), kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t v = begin; v < end; ++v) {
-            cubeOf[v] = cubes.numberOf(cubes.cubeAt(surface.points[v]));
-        }
-    });
-    const Buckets<std::uint32_t, std::uint32_t> inCube(cubes.count(), [&](const auto& give) {
-        for (std::uint32_t v = 0; v < cubeOf.size(); ++v) give(cubeOf[v], v);
-    });
-    std::vector<std::uint8_t> clearances(surface.points.size(), SheetClearance::kAlone);
-    parallelForPieces(
-        static_cast<std::int64_t>(cubes.count()), 1, [&](std::int64_t number, std::int64_t) {
-            const auto own = inCube.of(static_cast<std::size_t>(number));
-            if (own.empty()) return;
-            std::vector<Vec3> points, normals;
-            const auto add = [&](std::uint32_t v) {
-                points.push_back(surface.points[v]);
-                normals.push_back(areas[v]);
-            };
-            for (const std::uint32_t v : own) add(v);
-            BoundingBox box{points[0], points[0]};
-            for (const Vec3& p : points) box.add(p);
-            box.widen(frame().narrowestMm());
-            const Index3 at = cubes.cubeAt(points[0]);
-            for (int n = 0; n < 27; ++n) {
-                const auto other =
-                    cubes.find({at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1});
-                if (!other || *other == number) continue;
-                for (const std::uint32_t v : inCube.of(*other)) {
-                    const Vec3& p = surface.points[v];
-                    if (box.overlaps({p, p})) add(v);
-                }
-            }
-            std::vector<std::uint8_t> clearance(points.size(), SheetClearance::kAlone);
-            std::fill_n(clearance.begin(), own.size(), std::uint8_t{0});
-            SheetClearance::fillIn(points, normals, frame(), clearance);
-            for (std::size_t i = 0; i < own.size(); ++i) clearances[own[i]] = clearance[i];
-        });
-    return clearances;
-}
-
 /// \param areas  the sums of area vectors around each point \return of each triangle
 std::vector<std::uint8_t> MeshSurface::bentTriangles(const std::vector<Vec3>& areas) const {
     std::vector<std::uint8_t> isBent(parts_.triangles.size());
     parallelForPieces(std::ssize(isBent), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
             const MeshParts::Triangle& v = parts_.triangles[t];
-            const Vec3 a = normalized(areas[v[0]]), b = normalized(areas[v[1]]),
-                       c = normalized(areas[v[2]]);
-            isBent[t] = static_cast<std::uint8_t>(
-                !(std::min({dot(a, b), dot(b, c), dot(c, a)}) > kBentCosine));
+            isBent[t] =
+                static_cast<std::uint8_t>(cornersBend(areas[v[0]], areas[v[1]], areas[v[2]]));
         }
     });
     return isBent;
@@ -232,7 +184,8 @@ std::vector<std::uint8_t> MeshSurface::bentTriangles(const std::vector<Vec3>& ar
 /// unseen there.
 void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& areas,
                              SimplifiedSurface& surface) const {
-    const std::vector<std::uint8_t> clearances = clearancesOf(surface, areas);
+    std::vector<std::uint8_t> clearances(parts_.points.size(), 0);
+    SheetClearance::fillIn(parts_.points, areas, frame(), clearances);
     const std::vector<std::uint8_t> isBent = bentTriangles(areas);
     // to the sample: noise bends all triangles
     const std::size_t count =
@@ -241,25 +194,18 @@ void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& area
     reserveInHugePages(surface.sampleTriangle, count);
     surface.samples.resize(parts_.points.size());
     surface.sampleTriangle.resize(parts_.points.size());
-    parallelForPieces(std::ssize(surface.samples), kPiece,
-                      [&](std::int64_t begin, std::int64_t end) {
-                          for (std::int64_t v = begin; v < end; ++v) {
-                              Sample& sample = surface.samples[v];
-                              sample.setPoint(parts_.points[v]);
-                              sample.setNormal(areas[v]);
-                              sample.clearance = clearances[v];
-                              surface.sampleTriangle[v] = around.of(v).front();
-                          }
-                      });
+    parallelForPieces(
+        std::ssize(surface.samples), kPiece, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t v = begin; v < end; ++v) {
+                surface.samples[v] = Sample::at(parts_.points[v], areas[v], clearances[v]);
+                surface.sampleTriangle[v] = around.of(v).front();
+            }
+        });
     for (std::size_t t = 0; t < isBent.size(); ++t) {
         if (isBent[t] == 0) continue;
-        const Corners c = cornersOf(t);
         const MeshParts::Triangle& v = parts_.triangles[t];
-        Sample& middle = surface.samples.emplace_back();
-        middle.isMiddle = true;
-        middle.setPoint((1.0 / 3) * (c[0] + c[1] + c[2]));
-        middle.setNormal(areaVector2(c[0], c[1], c[2]));
-        middle.clearance = std::min({clearances[v[0]], clearances[v[1]], clearances[v[2]]});
+        surface.samples.push_back(Sample::middleOf(
+            cornersOf(t), std::min({clearances[v[0]], clearances[v[1]], clearances[v[2]]})));
         surface.sampleTriangle.push_back(static_cast<SurfaceState::Number>(t));
     }
 }

@@ -39,8 +39,6 @@ private:
     SimplifiedSurface unchanged(bool keepsHeirs) const;
     std::vector<Vec3> addPoints(const Around& around, SimplifiedSurface& surface) const;
     InsideOutPieces judge(const TriangleView& surface, std::span<const std::uint32_t> marks) const;
-    std::vector<std::uint8_t> clearancesOf(const SimplifiedSurface& surface,
-                                           const std::vector<Vec3>& areas) const;
     std::vector<std::uint8_t> bentTriangles(const std::vector<Vec3>& areas) const;
     void addSamples(const Around& around, const std::vector<Vec3>& areas,
                     SimplifiedSurface& surface) const;

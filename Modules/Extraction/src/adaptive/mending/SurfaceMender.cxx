@@ -131,8 +131,8 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
     parts_.clear();
     parent_.clear();
     samplesOf_.clear();
-    inCube_.clear();
-    mayHaveCube_.assign(kSlots, false);
+    inSlot_.assign(kSlots, {});
+    isSlotNear_.assign(kSlots, false);
     std::vector<bool> isTrackedVertex(surface_.points.size()), isNear(surface_.triangles.size());
     for (const PlaceBeyond& place : places) {
         for (const Number v : surface_.triangles[place.triangle]) isTrackedVertex[v] = true;
@@ -148,19 +148,16 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
         isNear[t] = true;
         BoundingBox box = boxOf(cornersOf(t));
         box.widen(cubeMm_ / 2);  // new vertices lie beside the triangle
-        forEachCube(box, [&](const Index3& cube) {
-            inCube_[cube];
-            mayHaveCube_[hashSlot(cube)] = true;
-        });
+        forEachSlot(box, [&](std::size_t slot) { isSlotNear_[slot] = true; });
     }
-    // most triangles lie in none of the cubes
-    const Numbers inCubes = numbersWhere(isNear.size(), [&](Number t) {
+    // most triangles lie in none of them
+    const Numbers inSlots = numbersWhere(isNear.size(), [&](Number t) {
         bool mayBeIn = false;
-        forEachCube(boxOf(cornersOf(t)),
-                    [&](const Index3& cube) { mayBeIn = mayBeIn || mayHaveCube_[hashSlot(cube)]; });
+        forEachSlot(boxOf(cornersOf(t)),
+                    [&](std::size_t slot) { mayBeIn = mayBeIn || isSlotNear_[slot]; });
         return mayBeIn;
     });
-    for (const Number t : inCubes) trackCubes(t);
+    for (const Number t : inSlots) trackBox(t);
     const Numbers samples = numbersWhere(surface_.sampleTriangle.size(), [&](Number s) {
         return isNear[surface_.sampleTriangle[s]];
     });
@@ -375,17 +372,9 @@ bool SurfaceMender::isSound(const std::vector<Corners>& triangles, const Numbers
 /// No other triangle has a corner there: two vertices at one place do not cross as trianglesCross
 /// has it, but are one vertex to whoever welds them.
 bool SurfaceMender::isFree(const Vec3& point, const Numbers& replaced) const {
-    bool isFree = true;
-    forEachCube({point, point}, [&](const Index3& cube) {
-        const auto in = inCube_.find(cube);
-        if (in == inCube_.end()) return;
-        isFree = std::none_of(in->second.begin(), in->second.end(), [&](Number t) {
-            const Corners c = cornersOf(t);
-            return std::find(c.begin(), c.end(), point) != c.end() && !contains(replaced, t) &&
-                   !contains(gone_, t);
-        });
+    return !isAnyNear({point, point}, replaced, [&](const Corners& other) {
+        return std::find(other.begin(), other.end(), point) != other.end();
     });
-    return isFree;
 }
 
 /// The samples of the replaced triangles lie within the bound of the new ones, or as near as the
@@ -411,20 +400,27 @@ bool SurfaceMender::crossesNothing(const std::vector<Corners>& triangles,
         for (std::size_t j = 0; j < i; ++j) {
             if (trianglesCross(triangles[i], triangles[j])) return false;
         }
-        const BoundingBox box = boxOf(triangles[i]);
-        bool isClear = true;
-        forEachCube(box, [&](const Index3& cube) {
-            const auto in = inCube_.find(cube);
-            if (!isClear || in == inCube_.end()) return;
-            isClear = std::none_of(in->second.begin(), in->second.end(), [&](Number t) {
-                const Corners other = cornersOf(t);
-                return boxOf(other).overlaps(box) && !contains(replaced, t) &&
-                       !contains(gone_, t) && trianglesCross(triangles[i], other);
-            });
+        const bool crosses = isAnyNear(boxOf(triangles[i]), replaced, [&](const Corners& other) {
+            return trianglesCross(triangles[i], other);
         });
-        if (!isClear) return false;
+        if (crosses) return false;
     }
     return true;
+}
+
+/// isMeant(corners) is true of a triangle that overlaps the box, and does not go.
+template <class IsMeant>
+bool SurfaceMender::isAnyNear(const BoundingBox& box, const Numbers& replaced,
+                              const IsMeant& isMeant) const {
+    bool isAny = false;
+    forEachSlot(box, [&](std::size_t slot) {
+        isAny = isAny || std::any_of(inSlot_[slot].begin(), inSlot_[slot].end(), [&](Number t) {
+                    const Corners other = cornersOf(t);
+                    return boxOf(other).overlaps(box) && isMeant(other) && !contains(replaced, t) &&
+                           !contains(gone_, t);
+                });
+    });
+    return isAny;
 }
 
 /// The triangle with this half-edge.
@@ -495,11 +491,6 @@ void SurfaceMender::replace(Number number, const Triangle& triangle) {
     track(number);
 }
 
-std::size_t SurfaceMender::CubeHash::operator()(const Index3& cube) const {
-    const auto at = [&](int a) { return static_cast<std::size_t>(cube[a]); };
-    return at(0) * 73856093 ^ at(1) * 19349663 ^ at(2) * 83492791;
-}
-
 /// The triangle is about to change.
 void SurfaceMender::note(Number triangle) {
     changes_.triangles.push_back(triangle);
@@ -514,14 +505,12 @@ void SurfaceMender::track(Number triangle) {
         const auto around = around_.find(v);
         if (around != around_.end()) around->second.push_back(triangle);
     }
-    trackCubes(triangle);
+    trackBox(triangle);
 }
 
-void SurfaceMender::trackCubes(Number triangle) {
-    forEachCube(boxOf(cornersOf(triangle)), [&](const Index3& cube) {
-        if (!mayHaveCube_[hashSlot(cube)]) return;
-        const auto in = inCube_.find(cube);
-        if (in != inCube_.end()) in->second.push_back(triangle);
+void SurfaceMender::trackBox(Number triangle) {
+    forEachSlot(boxOf(cornersOf(triangle)), [&](std::size_t slot) {
+        if (isSlotNear_[slot]) inSlot_[slot].push_back(triangle);
     });
 }
 
@@ -545,13 +534,18 @@ void SurfaceMender::handOver(const Numbers& from, const Numbers& to) {
     }
 }
 
+/// Calls f(slot) for the cubes that a box overlaps.
 template <class F>
-void SurfaceMender::forEachCube(const BoundingBox& box, const F& f) const {
+void SurfaceMender::forEachSlot(const BoundingBox& box, const F& f) const {
     const auto at = [&](double mm) { return static_cast<std::int64_t>(std::floor(mm / cubeMm_)); };
     for (std::int64_t z = at(box.minimum.z); z <= at(box.maximum.z); ++z) {
         for (std::int64_t y = at(box.minimum.y); y <= at(box.maximum.y); ++y) {
-            for (std::int64_t x = at(box.minimum.x); x <= at(box.maximum.x); ++x)
-                f(Index3{x, y, z});
+            for (std::int64_t x = at(box.minimum.x); x <= at(box.maximum.x); ++x) {
+                const auto hash = static_cast<std::uint64_t>(x) * 73856093 ^
+                                  static_cast<std::uint64_t>(y) * 19349663 ^
+                                  static_cast<std::uint64_t>(z) * 83492791;
+                f(static_cast<std::size_t>(hash % kSlots));
+            }
         }
     }
 }

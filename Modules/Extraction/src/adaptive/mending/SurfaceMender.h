@@ -50,9 +50,6 @@ private:
     using Numbers = std::vector<Number>;
     static constexpr Number kNone = ~Number{0};
     static constexpr std::size_t kSlots = std::size_t{1} << 18;
-    struct CubeHash {
-        std::size_t operator()(const Index3& cube) const;
-    };
 
     /// The edge from a to b with its triangles (a, b, c) and (b, a, d), the twin.
     struct Edge {
@@ -91,12 +88,13 @@ private:
     Number addTriangle(const Triangle& triangle, Number parent);
     void replace(Number number, const Triangle& triangle);
     void track(Number triangle);
-    void trackCubes(Number triangle);
-    static std::size_t hashSlot(const Index3& cube) { return CubeHash{}(cube) % kSlots; }
+    void trackBox(Number triangle);
     void note(Number triangle);
     void handOver(const Numbers& from, const Numbers& to);
     template <class F>
-    void forEachCube(const BoundingBox& box, const F& f) const;
+    void forEachSlot(const BoundingBox& box, const F& f) const;
+    template <class IsMeant>
+    bool isAnyNear(const BoundingBox& box, const Numbers& replaced, const IsMeant& isMeant) const;
 
     SimplifiedSurface& surface_;
     double squaredLimit_, cubeMm_;
@@ -111,10 +109,9 @@ private:
     std::unordered_map<Number, Numbers> parts_;      ///< of each triangle that was split
     std::unordered_map<Number, Number> parent_;      ///< of each part
     std::unordered_map<Number, Numbers> samplesOf_;  ///< of triangles around_ has
-    /// Triangles whose boxes overlap a cube, for the cubes that a change may reach into. Some have
-    /// changed since.
-    std::unordered_map<Index3, Numbers, CubeHash> inCube_;
-    std::vector<bool> mayHaveCube_;  ///< by hashSlot(): most cubes are not in inCube_
+    /// Triangles by the cubes that their boxes overlap, hashed. Some have changed since.
+    std::vector<Numbers> inSlot_;
+    std::vector<bool> isSlotNear_;  ///< a change may reach into a cube of it; others hold nothing
 };
 
 }  // namespace adaptiso::detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -7,7 +8,9 @@
 
 #include "adaptiso/Core/Geometry.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/SurfaceProof/Quadric.h"
+#include "adaptive/Parameters.h"
 #include "adaptive/bricks/SheetClearance.h"
 
 namespace adaptiso::detail {
@@ -40,10 +43,32 @@ struct Sample {
             direction[a] = static_cast<std::int16_t>(std::lround(unit[a]));
         }
     }
+    /// A vertex. \param n  of any length
+    static Sample at(const Vec3& p, const Vec3& n, std::uint8_t clearance) {
+        Sample sample;
+        sample.setPoint(p);
+        sample.setNormal(n);
+        sample.clearance = clearance;
+        return sample;
+    }
+    /// The middle of a triangle.
+    static Sample middleOf(const Corners& t, std::uint8_t clearance) {
+        Sample sample =
+            at((1.0 / 3) * (t[0] + t[1] + t[2]), areaVector2(t[0], t[1], t[2]), clearance);
+        sample.isMiddle = true;
+        return sample;
+    }
     static std::array<float, 3> positionOf(const Vec3& p) {
         return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
     }
 };
+
+/// Normals at a triangle's corners, of any length, are so far apart that the triangle's middle is a
+/// sample too.
+inline bool cornersBend(const Vec3& first, const Vec3& second, const Vec3& third) {
+    const Vec3 a = normalized(first), b = normalized(second), c = normalized(third);
+    return !(std::min({dot(a, b), dot(b, c), dot(c, a)}) > kBentCosine);
+}
 
 /// A part of a surface that is simplified alone, in the metric frame.
 ///

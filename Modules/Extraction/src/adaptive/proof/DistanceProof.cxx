@@ -364,22 +364,8 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface) {
 ErrorBound DistanceProof::proveAgain(const SimplifiedSurface& surface,
                                      const SurfaceChanges& changes) {
     if (walkable_.isEmpty()) return prove(surface);
-    follow(surface, changes);
+    walkable_.assign(surface.points, surface.triangles);
     return prove(surface, scopeOf(surface, changes));
-}
-
-/// Brings what is kept of the last surface to what it is now.
-void DistanceProof::follow(const SimplifiedSurface& surface, const SurfaceChanges& changes) {
-    const std::size_t before = walkable_.triangleCount(), now = surface.triangles.size();
-    std::vector<Number> changed = changes.triangles;
-    for (std::size_t t = std::min(before, now); t < std::max(before, now); ++t) {
-        changed.push_back(static_cast<Number>(t));
-    }
-    std::sort(changed.begin(), changed.end());
-    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    // some came and went meanwhile
-    std::erase_if(changed, [&](Number t) { return t >= std::max(before, now); });
-    walkable_.update(surface.points, surface.triangles, changed);
 }
 
 ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& scope) {

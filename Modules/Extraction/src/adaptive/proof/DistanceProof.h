@@ -66,7 +66,6 @@ private:
     Scope scopeOf(const SimplifiedSurface& surface, const SurfaceChanges& changes);
     void remember(std::size_t triangles, std::vector<PlaceBeyond> beyond);
     void markFine(const std::vector<Corners>& changed, Scope& scope);
-    void follow(const SimplifiedSurface& surface, const SurfaceChanges& changes);
     ErrorBound prove(const SimplifiedSurface& surface, const Scope& scope);
 
     TriangleView fineView_;

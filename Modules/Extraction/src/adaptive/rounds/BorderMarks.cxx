@@ -1,7 +1,6 @@
 #include "adaptive/rounds/BorderMarks.h"
 
-#include <algorithm>
-#include <tuple>
+#include "adaptiso/SurfaceProof/HalfEdges.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -33,31 +32,18 @@ void markSamples(SimplifiedSurface& surface) {
 
 std::vector<std::uint64_t> openHalfEdges(const SurfaceState& surface,
                                          std::span<const std::uint8_t> mayBeOnBorder) {
-    struct Side {
-        std::uint64_t low, high, halfEdge;
-    };
-    std::vector<Side> sides;
-    for (std::uint64_t t = 0; t < surface.triangles.size(); ++t) {
-        const SurfaceState::Triangle& c = surface.triangles[t];
-        for (std::uint64_t corner = 0; corner < 3; ++corner) {
-            const std::uint64_t a = c[corner], b = c[(corner + 1) % 3];
-            if (mayBeOnBorder[a] == 0 || mayBeOnBorder[b] == 0) continue;
-            sides.push_back({std::min(a, b), std::max(a, b), 3 * t + corner});
+    HalfEdges<SurfaceState::Number> halfEdges;
+    halfEdges.assign(surface.points.size(), surface.triangles);
+    std::vector<SurfaceState::Number> twin;
+    halfEdges.match(twin);
+    std::vector<std::uint64_t> open;
+    for (std::uint64_t h = 0; h < twin.size(); ++h) {
+        const SurfaceState::Triangle& t = surface.triangles[h / 3];
+        if (twin[h] == HalfEdges<SurfaceState::Number>::kNone && mayBeOnBorder[t[h % 3]] != 0 &&
+            mayBeOnBorder[t[(h + 1) % 3]] != 0) {
+            open.push_back(h);
         }
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
-        return std::tie(x.low, x.high, x.halfEdge) < std::tie(y.low, y.high, y.halfEdge);
-    });
-    std::vector<std::uint64_t> open;
-    const auto isOther = [](const Side& x, const Side& y) {
-        return x.low != y.low || x.high != y.high;
-    };
-    for (std::size_t n = 0; n < sides.size(); ++n) {
-        if (n > 0 && !isOther(sides[n - 1], sides[n])) continue;
-        if (n + 1 < sides.size() && !isOther(sides[n], sides[n + 1])) continue;
-        open.push_back(sides[n].halfEdge);
-    }
-    std::sort(open.begin(), open.end());
     return open;
 }
 

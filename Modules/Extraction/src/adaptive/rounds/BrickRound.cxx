@@ -18,20 +18,14 @@ namespace {
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
 /// Gives the vertices of a full-resolution surface their quadrics.
-/// \return the sum of the area vectors around each vertex
-std::vector<Vec3> addQuadrics(Patch& patch) {
+void addQuadrics(Patch& patch) {
     patch.quadrics.assign(patch.points.size(), {});
-    std::vector<Vec3> areas(patch.points.size());
     for (const auto& t : patch.triangles) {
         const Vec3& a = patch.points[t[0]];
-        const Vec3 area2 = areaVector2(a, patch.points[t[1]], patch.points[t[2]]);
-        const Quadric q = Quadric::ofTriangle(area2, a);
-        for (const std::uint32_t v : t) {
-            patch.quadrics[v] += q;
-            areas[v] += area2;
-        }
+        const Quadric q =
+            Quadric::ofTriangle(areaVector2(a, patch.points[t[1]], patch.points[t[2]]), a);
+        for (const std::uint32_t v : t) patch.quadrics[v] += q;
     }
-    return areas;
 }
 
 /// A brick after its own round.
@@ -55,7 +49,7 @@ struct BrickSurface {
     };
     std::vector<WallVertex> walls;
     std::int64_t tableTriangles = 0;
-    bool isWhole = false;  ///< it was left so, and has no quadrics
+    bool isWhole = false;  ///< noise: it is left so, and has no quadrics
 };
 
 /// Takes over what is not gone of the patch.
@@ -78,12 +72,14 @@ std::vector<std::uint32_t> takeOver(Patch& patch, BrickSurface& brick) {
         brick.triangles.push_back({newVertex[t[0]], newVertex[t[1]], newVertex[t[2]]});
     }
     brick.points.reserve(vertices);
-    brick.quadrics.reserve(vertices);
+    if (!brick.isWhole) brick.quadrics.reserve(vertices);
     brick.states.reserve(vertices);
     for (std::size_t v = 0; v < patch.points.size(); ++v) {
         if (newVertex[v] == kNone) continue;
         brick.points.push_back(patch.points[v]);
-        brick.quadrics.push_back(StoredQuadric::of(patch.quadrics[v], patch.points[v]));
+        if (!brick.isWhole) {
+            brick.quadrics.push_back(StoredQuadric::of(patch.quadrics[v], patch.points[v]));
+        }
         brick.states.push_back(patch.states[v]);
     }
     brick.samples = std::move(patch.samples);
@@ -106,26 +102,67 @@ std::vector<std::uint32_t> takeOver(Patch& patch, BrickSurface& brick) {
 /// volumes, and nearly all are simplified soundly: they are no webs.
 constexpr double kHairGap = 3 * kHair;
 
+/// The brick's full-resolution surface as it is made, metric frame.
+struct FineBrick {
+    FineSurface surface;
+    std::vector<Vec3> points;
+    std::vector<Vec3> areas;  ///< the sum of the area vectors around each point
+    bool isNoise = false;
+
+    void setPoints(const MetricFrame& frame);
+    bool bends(const std::array<std::uint32_t, 3>& t) const {
+        return cornersBend(areas[t[0]], areas[t[1]], areas[t[2]]);
+    }
+    bool findNoise() const;
+};
+
+void FineBrick::setPoints(const MetricFrame& frame) {
+    points.clear();
+    points.reserve(surface.vertices.size());
+    for (const FineVertex& v : surface.vertices) points.push_back(frame.fromIndex(v.index));
+    areas.assign(points.size(), {});
+    for (const auto& t : surface.triangles) {
+        const Vec3 area2 = areaVector2(points[t[0]], points[t[1]], points[t[2]]);
+        for (const std::uint32_t v : t) areas[v] += area2;
+    }
+}
+
+/// Half of the cells are crossed, nearly all of the surface has other parts of it near, and most of
+/// it bends: there is nothing flat to simplify, and each change would take long to prove.
+bool FineBrick::findNoise() const {
+    const auto isPart = [](double part, std::int64_t of, std::int64_t all) {
+        return static_cast<double>(of) >= part * static_cast<double>(all);
+    };
+    if (!isPart(kNoiseCrossed, surface.cellsCrossed, surface.cellsSeen)) return false;
+    const auto single = std::count_if(surface.vertices.begin(), surface.vertices.end(),
+                                      [](const FineVertex& v) { return v.isSingleSheet; });
+    if (isPart(kNoiseSingle, single, std::ssize(surface.vertices))) return false;
+    const auto bent = std::count_if(surface.triangles.begin(), surface.triangles.end(),
+                                    [&](const auto& t) { return bends(t); });
+    return isPart(kNoiseBent, bent, std::ssize(surface.triangles));
+}
+
 /// Distances to other sheets at a brick's vertices.
 struct Nearness {
     std::vector<std::uint8_t> clearance;  ///< see SheetClearance
     std::vector<std::uint8_t> isInWeb;    ///< see PatchLimits::webMm
 };
 
-/// \param areas  around each vertex
-Nearness nearnessOf(const FineSurface& fine, const std::vector<Vec3>& points,
-                    const std::vector<Vec3>& areas, const MetricFrame& frame, double webMm) {
+/// Of noise only where there is a single sheet for sure.
+Nearness nearnessOf(const FineBrick& made, const MetricFrame& frame, double webMm) {
+    const std::vector<FineVertex>& vertices = made.surface.vertices;
     Nearness near;
-    near.isInWeb.resize(points.size());
-    near.clearance.reserve(points.size());
-    for (const FineVertex& v : fine.vertices) {
+    near.isInWeb.resize(vertices.size());
+    near.clearance.reserve(vertices.size());
+    for (const FineVertex& v : vertices) {
         near.clearance.push_back(v.isSingleSheet ? SheetClearance::kAlone : 0);
     }
-    SheetClearance::fillIn(points, areas, frame, near.clearance);
+    if (made.isNoise) return near;
+    SheetClearance::fillIn(made.points, made.areas, frame, near.clearance);
     const std::array stepMm{norm(frame.fromIndex({1, 0, 0})), norm(frame.fromIndex({0, 1, 0})),
                             norm(frame.fromIndex({0, 0, 1}))};
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        const FineVertex& vertex = fine.vertices[v];
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        const FineVertex& vertex = vertices[v];
         if (vertex.gap == FineVertex::kNoGap) continue;
         const double gapMm = vertex.gap * stepMm[vertex.edge.axis()];
         if (gapMm < kNarrowGap * frame.narrowestMm()) {
@@ -136,100 +173,66 @@ Nearness nearnessOf(const FineSurface& fine, const std::vector<Vec3>& points,
     return near;
 }
 
-/// The normals at a triangle's corners, by the area vectors around them, are far apart.
-bool bends(const std::array<std::uint32_t, 3>& triangle, const std::vector<Vec3>& areas) {
-    const Vec3 a = normalized(areas[triangle[0]]), b = normalized(areas[triangle[1]]),
-               c = normalized(areas[triangle[2]]);
-    return !(std::min({dot(a, b), dot(b, c), dot(c, a)}) > kBentCosine);
-}
-
 /// Where the surface bends within a triangle its middle is a sample too: between corners a ridge
 /// could pass unseen.
-void addMiddles(const FineSurface& fine, const std::vector<Vec3>& areas, const Nearness& near,
-                Patch& patch) {
-    for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
-        const auto& v = fine.triangles[t];
-        if (!bends(v, areas)) continue;
-        const Vec3 &p = patch.points[v[0]], &q = patch.points[v[1]], &r = patch.points[v[2]];
-        Sample& middle = patch.samples.emplace_back();
-        middle.isMiddle = true;
-        middle.setPoint((1.0 / 3) * (p + q + r));
-        middle.setNormal(areaVector2(p, q, r));
-        middle.clearance =
-            std::min({near.clearance[v[0]], near.clearance[v[1]], near.clearance[v[2]]});
+void addMiddles(const FineBrick& made, const Nearness& near, Patch& patch) {
+    for (std::uint32_t t = 0; t < patch.triangles.size(); ++t) {
+        const auto& v = patch.triangles[t];
+        if (!made.bends(v)) continue;
+        Sample& middle = patch.samples.emplace_back(Sample::middleOf(
+            {patch.points[v[0]], patch.points[v[1]], patch.points[v[2]]},
+            std::min({near.clearance[v[0]], near.clearance[v[1]], near.clearance[v[2]]})));
         middle.isInWeb =
             near.isInWeb[v[0]] != 0 || near.isInWeb[v[1]] != 0 || near.isInWeb[v[2]] != 0;
         patch.sampleTriangle.push_back(t);
     }
 }
 
-/// The brick's full-resolution surface as it is made, metric frame.
-struct FineBrick {
-    FineSurface surface;
-    std::vector<Vec3> points;
-    std::vector<Vec3> areas;  ///< the sum of the area vectors around each point; if asked for
-    bool isNoise = false;
-
-    void setPoints(const MetricFrame& frame);
-    void addAreas();
-    bool findNoise();
-};
-
-void FineBrick::setPoints(const MetricFrame& frame) {
-    points.clear();
-    points.reserve(surface.vertices.size());
-    for (const FineVertex& v : surface.vertices) points.push_back(frame.fromIndex(v.index));
-}
-
-void FineBrick::addAreas() {
-    areas.assign(points.size(), {});
-    for (const auto& t : surface.triangles) {
-        const Vec3 area2 = areaVector2(points[t[0]], points[t[1]], points[t[2]]);
-        for (const std::uint32_t v : t) areas[v] += area2;
+/// The brick's full-resolution surface as a patch; vertices on walls go to the brick's list.
+Patch patchOf(const FineBrick& made, const Nearness& near, BrickSurface& brick) {
+    Patch patch;
+    patch.points = made.points;
+    patch.triangles = made.surface.triangles;
+    patch.ownTriangles = static_cast<std::uint32_t>(patch.triangles.size());
+    patch.states.assign(patch.points.size(),
+                        made.isNoise ? Patch::State::Final : Patch::State::Open);
+    patch.heirs.resize(patch.points.size());
+    std::iota(patch.heirs.begin(), patch.heirs.end(), 0U);
+    std::vector<std::uint32_t> triangleAt(patch.points.size());
+    for (std::uint32_t t = 0; t < patch.ownTriangles; ++t) {
+        for (const std::uint32_t v : patch.triangles[t]) triangleAt[v] = t;
     }
-}
-
-/// Half of the cells are crossed, nearly all of the surface has other parts of it near, and most of
-/// it bends: there is nothing flat to simplify, and each change would take long to prove.
-bool FineBrick::findNoise() {
-    const auto isPart = [](double part, std::int64_t of, std::size_t all) {
-        return static_cast<double>(of) >= part * static_cast<double>(all);
-    };
-    if (!isPart(kNoiseCrossed, surface.cellsCrossed, static_cast<std::size_t>(surface.cellsSeen))) {
-        return false;
+    for (std::uint32_t v = 0; v < patch.points.size(); ++v) {
+        const FineVertex& vertex = made.surface.vertices[v];
+        if (vertex.isOnWall) {
+            brick.walls.push_back(
+                {vertex.edge.word, v, 0, normalized(made.areas[v]), near.clearance[v]});
+            continue;
+        }
+        Sample& sample = patch.samples.emplace_back(
+            Sample::at(patch.points[v], made.areas[v], near.clearance[v]));
+        sample.isInWeb = near.isInWeb[v] != 0;
+        patch.sampleTriangle.push_back(triangleAt[v]);
     }
-    const auto single = std::count_if(surface.vertices.begin(), surface.vertices.end(),
-                                      [](const FineVertex& v) { return v.isSingleSheet; });
-    if (isPart(kNoiseSingle, single, surface.vertices.size())) return false;
-    addAreas();
-    const auto bent = std::count_if(surface.triangles.begin(), surface.triangles.end(),
-                                    [&](const auto& t) { return bends(t, areas); });
-    return isPart(kNoiseBent, bent, surface.triangles.size());
-}
-
-/// A triangle at each vertex.
-std::vector<std::uint32_t> trianglesAt(const FineSurface& fine) {
-    std::vector<std::uint32_t> triangleAt(fine.vertices.size());
-    for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
-        for (const std::uint32_t v : fine.triangles[t]) triangleAt[v] = t;
-    }
-    return triangleAt;
+    return patch;
 }
 
 /// Keeps the full-resolution surface, for the proof and to be brought back.
-/// \param heirOf  says of each vertex what the brick has in its place
-template <class HeirOf>
-void keepFine(const FineBrick& made, const HeirOf& heirOf, BrickSurface& brick) {
+/// \param newVertex  of each vertex, or kNone \param heirs  what each was merged into
+void keepFine(const FineBrick& made, const std::vector<std::uint32_t>& newVertex,
+              const std::vector<std::uint32_t>& heirs, BrickSurface& brick) {
     std::vector<std::uint32_t> number(made.points.size());
     std::uint32_t onWall = BrickSurface::kOnWall;
-    for (std::size_t v = 0; v < number.size(); ++v) {
+    for (std::uint32_t v = 0; v < number.size(); ++v) {
         if (made.surface.vertices[v].isOnWall) {
             number[v] = onWall++;
-        } else {
-            number[v] = static_cast<std::uint32_t>(brick.fine.points.size());
-            brick.fine.points.push_back(made.points[v]);
-            brick.heirs.push_back(heirOf(static_cast<std::uint32_t>(v)));
+            continue;
         }
+        number[v] = static_cast<std::uint32_t>(brick.fine.points.size());
+        brick.fine.points.push_back(made.points[v]);
+        std::uint32_t heir = v;
+        while (newVertex[heir] == kNone && heirs[heir] != heir) heir = heirs[heir];
+        brick.heirs.push_back(newVertex[heir]);
     }
     brick.fine.triangles.reserve(made.surface.triangles.size());
     for (const auto& [a, b, c] : made.surface.triangles) {
@@ -237,87 +240,28 @@ void keepFine(const FineBrick& made, const HeirOf& heirOf, BrickSurface& brick) 
     }
 }
 
-/// The brick as it is. Nothing of it is simplified later: it takes no quadrics.
-BrickSurface wholeBrick(const FineBrick& fine) {
-    BrickSurface brick;
-    brick.isWhole = true;
-    brick.points = fine.points;
-    brick.states.assign(brick.points.size(), Patch::State::Final);
-    brick.triangles = fine.surface.triangles;
-    const std::vector<std::uint32_t> triangleAt = trianglesAt(fine.surface);
-    for (std::uint32_t v = 0; v < brick.points.size(); ++v) {
-        const FineVertex& vertex = fine.surface.vertices[v];
-        if (vertex.isOnWall) {
-            brick.walls.push_back(
-                {vertex.edge.word, v, triangleAt[v], normalized(fine.areas[v]),
-                 vertex.isSingleSheet ? SheetClearance::kAlone : std::uint8_t{0}});
-            continue;
-        }
-        Sample& sample = brick.samples.emplace_back();
-        sample.setPoint(brick.points[v]);
-        sample.setNormal(fine.areas[v]);
-        sample.clearance = 0;
-        brick.sampleTriangle.push_back(triangleAt[v]);
-    }
-    keepFine(
-        fine, [](std::uint32_t v) { return v; }, brick);
-    return brick;
-}
-
-/// The brick's full-resolution surface as a patch; vertices on walls go to the brick's list.
-/// \param webMm  see PatchLimits
-Patch patchOf(const FineBrick& made, const MetricFrame& frame, double webMm, BrickSurface& brick) {
-    const FineSurface& fine = made.surface;
-    Patch patch;
-    patch.points = made.points;
-    patch.states.assign(patch.points.size(), Patch::State::Open);
-    patch.triangles = fine.triangles;
-    patch.ownTriangles = static_cast<std::uint32_t>(fine.triangles.size());
-    const std::vector<Vec3> areas = addQuadrics(patch);
-    const Nearness near = nearnessOf(fine, patch.points, areas, frame, webMm);
-    const std::vector<std::uint32_t> triangleAt = trianglesAt(fine);
-    for (std::uint32_t v = 0; v < fine.vertices.size(); ++v) {
-        const FineVertex& vertex = fine.vertices[v];
-        if (vertex.isOnWall) {
-            brick.walls.push_back(
-                {vertex.edge.word, v, 0, normalized(areas[v]), near.clearance[v]});
-            continue;
-        }
-        Sample& sample = patch.samples.emplace_back();
-        sample.setPoint(patch.points[v]);
-        sample.setNormal(areas[v]);
-        sample.clearance = near.clearance[v];
-        sample.isInWeb = near.isInWeb[v] != 0;
-        patch.sampleTriangle.push_back(triangleAt[v]);
-    }
-    addMiddles(fine, areas, near, patch);
-    return patch;
-}
-
+/// The brick after its own round; one of noise as it is: nothing of it is simplified later either.
 /// \param lowIndex  sample index of the brick's first lattice position
 BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const MetricFrame& frame,
                            const PatchLimits& limits, const BoundingBox* moving,
                            std::vector<double>* costs) {
     BrickSurface result;
-    Patch patch = patchOf(made, frame, limits.webMm, result);
-    patch.setBox(lowIndex, Brick::kSide);
-    for (std::size_t v = 0; v < patch.points.size(); ++v) {
-        const Vec3& index = made.surface.vertices[v].index;
-        const bool isOutside = moving != nullptr && !moving->contains(index);
-        if (isOutside) patch.states[v] = Patch::State::Final;
+    result.isWhole = made.isNoise;
+    const Nearness near = nearnessOf(made, frame, limits.webMm);
+    Patch patch = patchOf(made, near, result);
+    if (!made.isNoise) {
+        addQuadrics(patch);
+        addMiddles(made, near, patch);
+        patch.setBox(lowIndex, Brick::kSide);
+        for (std::size_t v = 0; v < patch.points.size(); ++v) {
+            const Vec3& index = made.surface.vertices[v].index;
+            const bool isOutside = moving != nullptr && !moving->contains(index);
+            if (isOutside) patch.states[v] = Patch::State::Final;
+        }
+        PatchSimplifier(patch, frame, limits).collapseEdges(patch.ownTriangles, costs);
     }
-    patch.heirs.resize(patch.points.size());
-    std::iota(patch.heirs.begin(), patch.heirs.end(), 0U);
-    PatchSimplifier simplifier(patch, frame, limits);
-    simplifier.collapseEdges(patch.ownTriangles, costs);
     const std::vector<std::uint32_t> newVertex = takeOver(patch, result);
-    keepFine(
-        made,
-        [&](std::uint32_t v) {
-            while (newVertex[v] == kNone && patch.heirs[v] != v) v = patch.heirs[v];
-            return newVertex[v];
-        },
-        result);
+    keepFine(made, newVertex, patch.heirs, result);
     return result;
 }
 
@@ -517,20 +461,14 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         InterruptionCheck::ask();
         Tools& mine = tools.local();
         FineBrick& fine = mine.fine;
-        mine.mesher.mesh(
-            bricks[b],
-            [&](const FineSurface&) {
-                fine.setPoints(frame);
-                fine.isNoise = limits.leavesNoise && fine.findNoise();
-                return !fine.isNoise;
-            },
-            fine.surface);
+        mine.mesher.mesh(bricks[b], fine.surface);
+        fine.setPoints(frame);
+        fine.isNoise = limits.leavesNoise && fine.findNoise();
+        if (!fine.isNoise) mine.mesher.findGaps(bricks[b], fine.surface);
         Index3 lowIndex = bricks[b].low;
         for (std::int64_t& along : lowIndex) along -= bricks.grid().offset;
-        BrickSurface brick = fine.isNoise
-                                 ? wholeBrick(fine)
-                                 : simplifyBrick(fine, lowIndex, frame, limits, moving,
-                                                 costs != nullptr ? &(*costs)[b] : nullptr);
+        BrickSurface brick = simplifyBrick(fine, lowIndex, frame, limits, moving,
+                                           costs != nullptr ? &(*costs)[b] : nullptr);
         brick.tableTriangles =
             std::ssize(brick.fine.triangles) - 2 * static_cast<std::int64_t>(fine.surface.middles);
         return brick;

@@ -12,46 +12,31 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr std::int64_t kPiece = 1 << 14;
-/// Beyond that many cubes in the bounding box only those that hold vertices are kept.
+/// Cubes in the bounding box at most.
 constexpr double kMostCubes = 1 << 20;
 
 }  // namespace
 
 PatchCubes::PatchCubes(const SurfaceState& surface, const PatchCut& cut, const MetricFrame& frame)
-    : cut_(cut), frame_(frame) {
+    : cut_(cut) {
     if (surface.points.empty()) return;
-    Vec3 low = frame.toIndex(surface.points[0]), high = low;
-    for (const Vec3& p : surface.points) {
-        const Vec3 index = frame.toIndex(p);
-        low = {std::min(low.x, index.x), std::min(low.y, index.y), std::min(low.z, index.z)};
-        high = {std::max(high.x, index.x), std::max(high.y, index.y), std::max(high.z, index.z)};
-    }
-    low_ = cubeAtIndex(low);
-    const Index3 last = cubeAtIndex(high);
-    double cubes = 1;
-    for (int a = 0; a < 3; ++a) {
-        count_[a] = last[a] - low_[a] + 1;
-        cubes *= static_cast<double>(count_[a]);
-    }
-    if (cubes <= kMostCubes) {
-        total_ = static_cast<std::size_t>(count_[0] * count_[1] * count_[2]);
-    } else {
-        listCubes(surface);
+    BoundingBox box = BoundingBox::empty();
+    for (const Vec3& p : surface.points) box.add(frame.toIndex(p));
+    for (;;) {
+        low_ = cubeAt(box.minimum);
+        const Index3 last = cubeAt(box.maximum);
+        double cubes = 1;
+        for (int a = 0; a < 3; ++a) {
+            count_[a] = last[a] - low_[a] + 1;
+            cubes *= static_cast<double>(count_[a]);
+        }
+        if (cubes <= kMostCubes) break;
+        cut_.side *= 2;
+        for (std::int64_t& along : cut_.shift) along *= 2;
     }
 }
 
-void PatchCubes::listCubes(const SurfaceState& surface) {
-    sparse_.reserve(surface.points.size());
-    for (const Vec3& p : surface.points) {
-        const Index3 cube = cubeAt(p);
-        sparse_.push_back({cube[2], cube[1], cube[0]});
-    }
-    std::sort(sparse_.begin(), sparse_.end());
-    sparse_.erase(std::unique(sparse_.begin(), sparse_.end()), sparse_.end());
-    total_ = sparse_.size();
-}
-
-Index3 PatchCubes::cubeAtIndex(const Vec3& index) const {
+Index3 PatchCubes::cubeAt(const Vec3& index) const {
     Index3 cube;
     for (int a = 0; a < 3; ++a) {
         cube[a] = static_cast<std::int64_t>(std::floor(
@@ -60,28 +45,10 @@ Index3 PatchCubes::cubeAtIndex(const Vec3& index) const {
     return cube;
 }
 
-std::optional<std::uint32_t> PatchCubes::find(const Index3& cube) const {
-    if (!sparse_.empty()) {
-        const Place place{cube[2], cube[1], cube[0]};
-        const auto at = std::lower_bound(sparse_.begin(), sparse_.end(), place);
-        if (at == sparse_.end() || *at != place) return {};
-        return static_cast<std::uint32_t>(at - sparse_.begin());
-    }
-    for (int a = 0; a < 3; ++a) {
-        if (cube[a] < low_[a] || cube[a] >= low_[a] + count_[a]) return {};
-    }
-    return placeOf(cube);
-}
-
 void PatchCubes::setBounds(std::size_t number, Patch& patch) const {
-    Index3 low;
-    if (!sparse_.empty()) {
-        low = {sparse_[number][2], sparse_[number][1], sparse_[number][0]};
-    } else {
-        const auto n = static_cast<std::int64_t>(number);
-        low = {n % count_[0] + low_[0], n / count_[0] % count_[1] + low_[1],
+    const auto n = static_cast<std::int64_t>(number);
+    Index3 low{n % count_[0] + low_[0], n / count_[0] % count_[1] + low_[1],
                n / (count_[0] * count_[1]) + low_[2]};
-    }
     for (int a = 0; a < 3; ++a) low[a] = low[a] * cut_.side + cut_.shift[a];
     patch.setBox(low, cut_.side);
 }
@@ -89,6 +56,7 @@ void PatchCubes::setBounds(std::size_t number, Patch& patch) const {
 PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
                          const MetricFrame& frame)
     : surface_(surface),
+      frame_(frame),
       cubes_(surface, cut, frame),
       hasSettled_(!isOne() && manyAreFinal()),
       cubeOfVertex_(cubesOfVertices()),
@@ -110,7 +78,7 @@ std::vector<std::uint32_t> PatchGroups::cubesOfVertices() const {
     parallelForPieces(static_cast<std::int64_t>(cubes.size()), kPiece,
                       [&](std::int64_t begin, std::int64_t end) {
                           for (std::int64_t v = begin; v < end; ++v) {
-                              cubes[v] = cubes_.numberOf(cubes_.cubeAt(surface_.points[v]));
+                              cubes[v] = cubes_.numberAt(frame_.toIndex(surface_.points[v]));
                           }
                       });
     return cubes;
@@ -160,7 +128,7 @@ void PatchGroups::leaveOutSettled() {
 }
 
 BoundingBox PatchGroups::indexBoxOf(const SurfaceState::Triangle& triangle) const {
-    const auto at = [&](int c) { return cubes_.frame().toIndex(surface_.points[triangle[c]]); };
+    const auto at = [&](int c) { return frame_.toIndex(surface_.points[triangle[c]]); };
     return boxOf({at(0), at(1), at(2)});
 }
 
@@ -193,12 +161,11 @@ void PatchGroups::listObstacles() {
         const BoundingBox box = indexBoxOf(surface_.triangles[t]);
         const auto place = static_cast<std::uint32_t>(obstacleTriangles_.size());
         placeOfTriangle_[t] = kNone;
-        cubes_.forEachBetween(cubes_.cubeAtIndex(box.minimum), cubes_.cubeAtIndex(box.maximum),
-                              [&](std::uint32_t cube) {
-                                  if (hasSettled_ && !reach_[cube].overlaps(box)) return;
-                                  obstacles_[cube].push_back(place);
-                                  placeOfTriangle_[t] = place;
-                              });
+        cubes_.forEachIn(box, [&](std::uint32_t cube) {
+            if (hasSettled_ && !reach_[cube].overlaps(box)) return;
+            obstacles_[cube].push_back(place);
+            placeOfTriangle_[t] = place;
+        });
         if (placeOfTriangle_[t] == place) obstacleTriangles_.push_back(t);
     }
 }

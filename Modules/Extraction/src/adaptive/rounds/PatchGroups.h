@@ -1,8 +1,7 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,64 +19,43 @@ struct PatchCut {
     Index3 shift{};
 };
 
-/// The cubes of a cut that can hold the surface, by numbers that grow with x, then y, then z: those
-/// of its bounding box, or where that has many, those that hold vertices.
+/// The cubes of a cut in the surface's bounding box, by numbers that grow with x, then y, then z.
+/// Where they would be too many they are larger.
 class PatchCubes {
 public:
     PatchCubes(const SurfaceState& surface, const PatchCut& cut, const MetricFrame& frame);
 
-    std::size_t count() const { return total_; }
-    Index3 cubeAt(const Vec3& p) const { return cubeAtIndex(frame_.toIndex(p)); }
-    Index3 cubeAtIndex(const Vec3& index) const;
-    /// Number of a cube, if it is one of them.
-    std::optional<std::uint32_t> find(const Index3& cube) const;
-    /// \pre it is one of them
-    std::uint32_t numberOf(const Index3& cube) const {
-        return sparse_.empty() ? placeOf(cube) : *find(cube);
+    std::size_t count() const {
+        return static_cast<std::size_t>(count_[0] * count_[1] * count_[2]);
     }
-    /// Calls f(number) for those from a first to a last one, along each axis.
+    Index3 cubeAt(const Vec3& index) const;
+    /// \param index  of a point in the bounding box
+    std::uint32_t numberAt(const Vec3& index) const { return numberOf(cubeAt(index)); }
+    /// Calls f(number) for those that a box overlaps.
     template <class F>
-    void forEachBetween(const Index3& first, const Index3& last, const F& f) const;
+    void forEachIn(const BoundingBox& indexBox, const F& f) const;
     void setBounds(std::size_t number, Patch& patch) const;
-    const MetricFrame& frame() const { return frame_; }
 
 private:
-    using Place = std::array<std::int64_t, 3>;  ///< of a cube: z, y, x
-
-    std::uint32_t placeOf(const Index3& cube) const {
+    std::uint32_t numberOf(const Index3& cube) const {
         return static_cast<std::uint32_t>(
             cube[0] - low_[0] + count_[0] * (cube[1] - low_[1] + count_[1] * (cube[2] - low_[2])));
     }
-    void listCubes(const SurfaceState& surface);
 
     PatchCut cut_;
-    const MetricFrame& frame_;
     Index3 low_{0, 0, 0}, count_{1, 1, 1};
-    std::vector<Place> sparse_;  ///< those that hold vertices, ascending; empty: all of the box
-    std::size_t total_ = 1;
 };
 
 template <class F>
-void PatchCubes::forEachBetween(const Index3& first, const Index3& last, const F& f) const {
-    double cubes = 1;
-    for (int a = 0; a < 3; ++a) cubes *= static_cast<double>(last[a] - first[a] + 1);
-    if (!sparse_.empty() && cubes > static_cast<double>(total_)) {
-        for (std::uint32_t n = 0; n < total_; ++n) {
-            bool isBetween = true;
-            for (int a = 0; a < 3; ++a) {
-                isBetween =
-                    isBetween && sparse_[n][2 - a] >= first[a] && sparse_[n][2 - a] <= last[a];
-            }
-            if (isBetween) f(n);
-        }
-        return;
+void PatchCubes::forEachIn(const BoundingBox& indexBox, const F& f) const {
+    Index3 first = cubeAt(indexBox.minimum), last = cubeAt(indexBox.maximum);
+    for (int a = 0; a < 3; ++a) {
+        first[a] = std::max(first[a], low_[a]);
+        last[a] = std::min(last[a], low_[a] + count_[a] - 1);
     }
     for (std::int64_t z = first[2]; z <= last[2]; ++z) {
         for (std::int64_t y = first[1]; y <= last[1]; ++y) {
-            for (std::int64_t x = first[0]; x <= last[0]; ++x) {
-                const std::optional<std::uint32_t> number = find({x, y, z});
-                if (number) f(*number);
-            }
+            for (std::int64_t x = first[0]; x <= last[0]; ++x) f(numberOf({x, y, z}));
         }
     }
 }
@@ -167,6 +145,7 @@ private:
     void addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const;
 
     const SimplifiedSurface& surface_;
+    const MetricFrame& frame_;
     PatchCubes cubes_;
     bool hasSettled_;  ///< triangles
     std::vector<std::uint32_t> cubeOfVertex_, cubeOfTriangle_;

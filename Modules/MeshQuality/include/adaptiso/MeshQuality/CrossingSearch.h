@@ -14,9 +14,16 @@
 
 namespace adaptiso {
 
-/// Finds the vertices of a mesh with a fan of triangles all round that is clear of itself: seen
-/// along one direction all of them are upright and go round the vertex once. No two triangles of
-/// such a fan cross (see trianglesCross()). What is no such fan may be clear all the same.
+/// Triangles of a fan that goesRoundOnce() judges, at most.
+inline constexpr std::size_t kMostOfFan = 24;
+
+/// The triangles all round a vertex are clear of themselves: seen along one direction all of them
+/// are upright and go round the vertex once. No two triangles of such a fan cross (see
+/// trianglesCross()). What is no such fan may be clear all the same.
+/// \param spokes  from the vertex to the ring's, in their order round it; no more than kMostOfFan
+bool goesRoundOnce(std::span<const Vec3> spokes);
+
+/// Finds the vertices of a mesh with a fan of triangles all round that is clear of itself.
 ///
 /// Cost: O(T), in parallel; 28 bytes a triangle while it is made, then one byte a vertex.
 class ClearFans {

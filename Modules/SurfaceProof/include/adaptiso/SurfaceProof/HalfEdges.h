@@ -32,33 +32,6 @@ public:
         });
     }
 
-    /// Brings half-edges and their opposites to what the triangles are now.
-    /// \param changed  numbers of the triangles that are new, changed or gone, ascending
-    /// \param twin     what match() gave before; then what it would give
-    void update(std::size_t points, std::span<const std::array<Index, 3>> triangles,
-                std::span<const Index> changed, std::vector<Index>& twin) {
-        std::vector<std::uint8_t> isChanged(std::max(triangles_.size(), triangles.size()), 0);
-        std::vector<std::pair<std::size_t, Index>> added;
-        for (const Index t : changed) {
-            isChanged[t] = 1;
-            if (static_cast<std::size_t>(t) >= triangles.size()) continue;
-            for (std::size_t c = 0; c < 3; ++c) {
-                added.emplace_back(triangles[t][c], static_cast<Index>(3 * t + c));
-            }
-        }
-        std::sort(added.begin(), added.end());
-        triangles_ = triangles;
-        std::vector<std::int64_t> fans;
-        leaving_.update(
-            points, [&](Index h) { return isChanged[h / 3] != 0; },
-            std::span<const std::pair<std::size_t, Index>>(added),
-            [&](std::size_t v) { fans.push_back(static_cast<std::int64_t>(v)); });
-        twin.resize(3 * triangles.size());
-        for (const std::int64_t v : fans) {
-            forEachFanOf(v, v + 1, [&](std::span<const Spoke> spokes) { matchFan(spokes, twin); });
-        }
-    }
-
     /// In ascending order.
     std::span<const Index> from(Index vertex) const { return leaving_.of(vertex); }
     /// The vertex that a half-edge runs to.

@@ -4,9 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "adaptiso/Core/Memory.h"
@@ -31,36 +29,6 @@ public:
         } else {
             assignSideBySide(givers, give);
         }
-    }
-
-    /// Takes items out of their buckets and puts others in; calls changed(bucket) for each bucket
-    /// with any of them, in ascending order.
-    /// \param count  buckets, from now on; those beyond it are to lose all their items
-    /// \param added  (bucket, item), ascending
-    template <class IsGone, class Changed>
-    void update(std::size_t count, const IsGone& isGone,
-                std::span<const std::pair<std::size_t, Item>> added, const Changed& changed) {
-        std::vector<Place> begin(count + 2, 0);
-        std::vector<Item> items;
-        items.reserve(items_.size() + added.size());
-        auto next = added.begin();
-        for (std::size_t bucket = 0; bucket < count; ++bucket) {
-            const std::span<const Item> old =
-                bucket < this->count() ? of(bucket) : std::span<const Item>();
-            std::remove_copy_if(old.begin(), old.end(), std::back_inserter(items), isGone);
-            const auto kept = static_cast<std::ptrdiff_t>(items.size());
-            const std::size_t left = items.size() - begin[bucket];
-            for (; next != added.end() && next->first == bucket; ++next)
-                items.push_back(next->second);
-            const auto end = static_cast<std::ptrdiff_t>(items.size());
-            std::inplace_merge(items.begin() + static_cast<std::ptrdiff_t>(begin[bucket]),
-                               items.begin() + kept, items.end());
-            if (left < old.size() || end > kept) changed(bucket);
-            begin[bucket + 1] = static_cast<Place>(items.size());
-        }
-        begin[count + 1] = begin[count];
-        begin_ = std::move(begin);
-        items_ = std::move(items);
     }
 
     std::size_t count() const { return begin_.size() - 2; }

@@ -63,16 +63,6 @@ public:
         halfEdges_.match(twin_);
     }
 
-    /// The same surface after some of its triangles have changed.
-    /// \param changed  their numbers, ascending, also of those that went
-    void update(std::span<const Vec3> points, std::span<const std::array<Index, 3>> triangles,
-                std::span<const Index> changed) {
-        points_ = points;
-        triangles_ = triangles;
-        normals_.clear();
-        halfEdges_.update(points.size(), triangles, changed, twin_);
-    }
-
     std::size_t triangleCount() const { return triangles_.size(); }
 
     Corners cornersOf(Index t) const {
