@@ -187,8 +187,6 @@ inline constexpr double kProofGap = 1e-4;
 /// surface, this many and so many for each voxel's face that would cover it.
 inline constexpr int kStepsOfFine = 40, kFewSteps = 100;
 inline constexpr double kStepsPerFace = 20, kManySteps = 1e6;
-/// Voxels: from this bound on few pieces need cuts, and triangles are quartered instead.
-inline constexpr double kLooseBound = 0.2;
 
 // ---- Mending (SurfaceMender) ----
 

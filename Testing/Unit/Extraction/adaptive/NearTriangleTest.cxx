@@ -25,18 +25,6 @@ TEST(NearTriangle, TellsWhatTheDistanceTells) {
     EXPECT_LT(within, 15000);
 }
 
-TEST(NearTriangle, HasAPieceWhoseCornersItHas) {
-    const Corners t{Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}};
-    const detail::NearTriangle near(t, 0.25);
-    const Corners piece{Vec3{1, 1, 0.4}, Vec3{-0.4, 1, 0}, Vec3{1, -0.3, -0.3}};
-    EXPECT_TRUE(near.has(piece));
-    for (int c = 0; c < 3; ++c) {
-        Corners far = piece;
-        far[c].z = 0.6;
-        EXPECT_FALSE(near.has(far)) << c;
-    }
-}
-
 // A side is told by the corner at which it begins.
 TEST(NearTriangle, KnowsTheSideThatAPointLiesBeyond) {
     const Corners t{Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}};

@@ -45,19 +45,15 @@ struct Target {
 template <class Index>
 class OneWayProof {
 public:
-    OneWayProof(const Target<Index>& to, double voxelMm, double enoughMm, double limitMm)
-        : to_(to), looseMm_(kLooseBound * voxelMm), limitMm_(limitMm), bound_(enoughMm) {}
+    OneWayProof(const Target<Index>& to, double enoughMm, double limitMm)
+        : to_(to), limitMm_(limitMm), bound_(enoughMm) {}
 
     /// \param starts  triangles of the other surface that are thought to be near: one or more
     /// \param makePlace  (point, nearest point, nearest triangle) -> PlaceBeyond
     template <class MakePlace>
     void include(const Corners& piece, std::span<const Index> starts, int steps,
                  const MakePlace& makePlace) {
-        if (bound_.boundMm() > looseMm_ && quarters(piece) <= std::ssize(to_.view.triangles)) {
-            walk_.coverLoosely(piece, to_.walkable, starts[0], bound_.squaredBound(), steps);
-        } else {
-            walk_.cover(ConvexPiece(piece), to_.walkable, starts[0], bound_.squaredBound(), steps);
-        }
+        walk_.cover(ConvexPiece(piece), to_.walkable, starts[0], bound_.squaredBound(), steps);
         if (walk_.left().empty()) return;
         collectAround(starts);
         for (const ConvexPiece& left : walk_.left()) {
@@ -70,15 +66,6 @@ public:
     }
 
     double squaredBound() const { return bound_.squaredBound(); }
-
-    /// How many parts coverLoosely() makes of a triangle, about: of one that is huge beside the
-    /// bound, in a mesh whose usual triangles are tiny, too many.
-    std::int64_t quarters(const Corners& t) const {
-        const double longest = std::max(
-            {squaredNorm(t[1] - t[0]), squaredNorm(t[2] - t[1]), squaredNorm(t[0] - t[2])});
-        const double parts = longest / (kLargeQuarter * kLargeQuarter * bound_.squaredBound());
-        return static_cast<std::int64_t>(std::min(parts, 1e18));
-    }
 
     PartBound result() {
         result_.provedMm = bound_.boundMm();
@@ -141,7 +128,7 @@ private:
     }
 
     const Target<Index>& to_;
-    double looseMm_, limitMm_;
+    double limitMm_;
     PieceBound bound_;
     SurfaceWalk walk_;
     std::vector<Index> numbers_;
@@ -195,7 +182,7 @@ Number sameTriangle(const Task& task, std::uint32_t t) {
 PartBound proveFine(const Task& task, const std::vector<std::uint8_t>& isKnown, std::int64_t begin,
                     std::int64_t end, PieceMap& map, FineFound& found) {
     const Target<Number>& to = task.simplified;
-    OneWayProof<Number> proof(to, task.voxelMm, task.enoughMm, task.limitMm);
+    OneWayProof<Number> proof(to, task.enoughMm, task.limitMm);
     map.beginPiece(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin));
     forEachUnknown(isKnown, begin, end, [&](std::uint32_t t) {
         const Number same = sameTriangle(task, t);
@@ -241,7 +228,7 @@ void addBorders(const Task& task, std::int64_t begin, std::int64_t end, PieceMap
 PartBound proveSimplified(const Task& task, const std::vector<std::uint8_t>& isKnown,
                           const std::vector<std::uint32_t>& starts, std::int64_t begin,
                           std::int64_t end, const FineFound& found) {
-    OneWayProof<std::uint32_t> proof(task.fine, task.voxelMm, task.enoughMm, task.limitMm);
+    OneWayProof<std::uint32_t> proof(task.fine, task.enoughMm, task.limitMm);
     forEachUnknown(isKnown, begin, end, [&](std::uint32_t t) {
         if (found.isFine[t] != 0 || found.cover.covers(t)) return;
         const Corners corners = task.simplified.walkable.cornersOf(t);

@@ -37,7 +37,6 @@ public:
         return (isBeyondF && isNear(qq, g, ff_)) || (isBeyondE && isNear(qq, d, ee_)) ||
                (isBeyondThird && isNear(qq - 2 * d + ee_, g - d - ef_ + ee_, ff_ - 2 * ef_ + ee_));
     }
-    bool has(const Corners& piece) const { return has(piece[0]) && has(piece[1]) && has(piece[2]); }
 
 private:
     /// Below this part of the product of its sides the squared double area is lost in rounding.

@@ -153,58 +153,7 @@ public:
         walk(piece, surface, start, squaredDistance, steps);
     }
 
-    /// The same of a triangle, quicker where the distance is not small beside the surface's
-    /// triangles: parts that lie within it of the triangle under their middle need no cuts.
-    template <class Index>
-    void coverLoosely(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
-                      double squaredDistance, int steps) {
-        left_.clear();
-        witnesses_.clear();
-        quarter(piece, surface, start, squaredDistance, steps);
-    }
-
 private:
-    template <class Index>
-    void quarter(const Corners& piece, const WalkableSurface<Index>& surface, Index start,
-                 double squaredDistance, int steps) {
-        const auto& [a, b, c] = piece;
-        const double longest =
-            std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
-        Index t = start;
-        if (longest <= kLargeQuarter * kLargeQuarter * squaredDistance) {
-            t = under((1.0 / 3) * (a + b + c), surface, start);
-            const Corners corners = surface.cornersOf(t);
-            if (NearTriangle(corners, squaredDistance).has(piece)) {
-                witnesses_.push_back(t);
-                return;
-            }
-        }
-        if (longest <= kSmallQuarter * kSmallQuarter * squaredDistance) {
-            walk(ConvexPiece(piece), surface, t, squaredDistance, steps);
-            return;
-        }
-        const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-        quarter({ab, bc, ca}, surface, t, squaredDistance, steps);
-        quarter({a, ab, ca}, surface, t, squaredDistance, steps);
-        quarter({ab, b, bc}, surface, t, squaredDistance, steps);
-        quarter({ca, bc, c}, surface, t, squaredDistance, steps);
-    }
-
-    /// The triangle that a point lies over, or one on the way there.
-    template <class Index>
-    static Index under(const Vec3& p, const WalkableSurface<Index>& surface, Index t) {
-        Index last = WalkableSurface<Index>::kNone;
-        for (int step = 0; step < kStepsUnder; ++step) {
-            const int side = sideTowards(p, surface.cornersOf(t));
-            if (side < 0) break;
-            const Index next = surface.across(t, side);
-            if (next == WalkableSurface<Index>::kNone || next == last) break;
-            last = t;
-            t = next;
-        }
-        return t;
-    }
-
     template <class Index>
     void walk(const ConvexPiece& piece, const WalkableSurface<Index>& surface, Index start,
               double squaredDistance, int steps) {
