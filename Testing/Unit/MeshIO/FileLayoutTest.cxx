@@ -204,7 +204,7 @@ TEST(VtkFiles, HoldValuesAtPoints) {
     EXPECT_NE(xml.find("type=\"UInt8\" Name=\"Shade\" NumberOfComponents=\"3\""),
               std::string::npos);
     // beside the mesh: what is read is what was written without them
-    const MeshFormat& format = findMeshFormat("a.vtp");
+    const MeshFormat format = findMeshFormat("a.vtp");
     EXPECT_EQ(decodeMesh(xml, format, "a").mesh,
               decodeMesh(written(icosphere(1), "b.vtp", {}), format, "b").mesh);
 }

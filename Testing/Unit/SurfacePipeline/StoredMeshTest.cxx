@@ -161,7 +161,7 @@ TEST(SettleRounding, MeasuresTheRoundingOfTheFile) {
     const ImageGeometry volume{{256, 256, 256}, {-128, -128, -128}, {}};
     for (const double far : {10.0, 4e4, 4e5}) {
         for (const char* name : {"a.obj", "a.off", "a.gii", "a.surf", "a.tri", "a.vtp"}) {
-            const MeshFormat& format = findMeshFormat(name);
+            const MeshFormat format = findMeshFormat(name);
             const CoordinateFrame frame = defaultFrame(format);
             TriangleMesh sphere = testing::icosphere(3, {far, 0.3 * far, -0.7 * far}, 50);
             sphere.normals = {};
@@ -187,7 +187,7 @@ TEST(SettleRounding, MeasuresTheRoundingOfTheFile) {
 }
 
 TEST(RoundingFault, RefusesRoundingBeyondTheBound) {
-    const MeshFormat& stl = findMeshFormat("a.stl");
+    const MeshFormat stl = findMeshFormat("a.stl");
     EXPECT_FALSE(roundingFault(0.01, 0.05, stl));
     EXPECT_EQ(roundingFault(0.226, 0.05, stl),
               "STL (binary) keeps 24 bits of a coordinate: points would move by up to 0.226 mm, "
@@ -196,7 +196,7 @@ TEST(RoundingFault, RefusesRoundingBeyondTheBound) {
 }
 
 TEST(RoundingWarning, StatesTheBoundOfTheFileWhereItIsNoticeablyLarger) {
-    const MeshFormat& stl = findMeshFormat("a.stl");
+    const MeshFormat stl = findMeshFormat("a.stl");
     const auto warning = roundingWarning("a.stl", 0.056789, 0.05, 0.006789, stl);
     ASSERT_TRUE(warning);
     EXPECT_EQ(warning->code, "bound-exceeded");
