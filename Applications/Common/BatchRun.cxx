@@ -440,12 +440,12 @@ std::string changeOfInputs(const PlannedRun& run, const RunRecord& record, const
 
 /// Compares surfaces and requested extras; other outputs are ignored.
 std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record) {
-    for (const auto& [option, path] : run.extras) {
-        const fs::path wanted = path.lexically_normal(), folder = wanted / "";
-        const bool isRecorded = std::ranges::any_of(
-            record.recordedOutputs, [&, &option = option](const RecordedFile& output) {
+    for (const auto& extra : run.extras) {
+        const fs::path wanted = extra.second.lexically_normal(), folder = wanted / "";
+        const bool isRecorded =
+            std::ranges::any_of(record.recordedOutputs, [&](const RecordedFile& output) {
                 const fs::path file = (run.item.folder / output.file).lexically_normal();
-                return output.option == option &&
+                return output.option == extra.first &&
                        (file == wanted || file.parent_path() / "" == folder);
             });
         if (!isRecorded) return wanted.filename().string() + " was not made";
