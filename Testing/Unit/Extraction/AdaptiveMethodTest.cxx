@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <tuple>
 
 #include "RandomVolumes.h"
@@ -379,22 +378,6 @@ TEST(AdaptiveMethod, NeedsTwelveTrianglesForAFlatBox) {
 
 // Faces of one triangle over thousands: parts of it, each looked at in turn, took twenty times as
 // long by half a voxel as by the default bound.
-TEST(AdaptiveMethod, TakesALooseBoundOfLargeFlatFacesAsQuicklyAsATightOne) {
-    const HardVolume cube = binaryVolume({140, 140, 140}, [](auto x, auto y, auto z) {
-        return std::min({x, y, z}) >= 10 && std::max({x, y, z}) < 130;
-    });
-    const auto secondsBy = [&](double bound) {
-        AdaptiveOptions adaptive;
-        adaptive.maxErrorMm = bound;
-        const std::clock_t begin = std::clock();
-        const Extraction made = extractWith(cube.volume.view(), cube.isovalue, adaptive);
-        EXPECT_LE(std::ssize(made.mesh.triangles), 200) << bound;
-        return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    };
-    const double tight = secondsBy(0.15);
-    EXPECT_LT(secondsBy(0.5), 5 * tight);
-}
-
 TEST(AdaptiveMethod, MakesNoSharperAngleThanAsked) {
     const Volume volume = ball(40, 14, Mat3{});
     AdaptiveOptions adaptive;
