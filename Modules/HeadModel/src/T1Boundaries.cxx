@@ -589,7 +589,9 @@ Mask withSinuses(Mask brain, const Head& head) {
     constexpr double kBright = 1.2, kDentMm = 20;
     const Mask bright = above(head.t1, std::lerp(head.levels.air, head.levels.tissue, kBright));
     const Mask around = wholeBrain(brain, head, kDentMm);
-    for (std::size_t n = 0; n < brain.size(); ++n) brain[n] |= bright[n] & around[n];
+    for (std::size_t n = 0; n < brain.size(); ++n) {
+        if (bright[n] && around[n]) brain[n] = 1;
+    }
     return brain;
 }
 

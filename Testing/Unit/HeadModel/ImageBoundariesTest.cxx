@@ -192,8 +192,8 @@ TEST(BoundariesFromT1, TakeABrightDuraForTheInnerSkullItself) {
         options.smoothingMm = 2;
         return boundariesFromT1({t1.data(), head.geometry}, std::nullopt, options);
     };
-    const auto saysDura = [](const HeadBoundaries& head) {
-        return std::any_of(head.notes.begin(), head.notes.end(), [](const std::string& note) {
+    const auto saysDura = [](const HeadBoundaries& made) {
+        return std::any_of(made.notes.begin(), made.notes.end(), [](const std::string& note) {
             return note.find("contrast agent") != std::string::npos;
         });
     };
