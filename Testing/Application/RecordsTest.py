@@ -317,13 +317,17 @@ class LeftByAKill(RecordsTest):
         process = subprocess.Popen([MESH, "noise.nii", "--iso", "100", "--iso", "150", "--method",
                                     "mc", "-o", "out/noise-{iso}.obj"], cwd=self.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        while not self.temporaries():
-            self.assertIsNone(process.poll())
-            time.sleep(0.001)
-        process.send_signal(signal.SIGSTOP)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
-        return process
+        while True:
+            while not self.temporaries():
+                self.assertIsNone(process.poll())
+                time.sleep(0.001)
+            process.send_signal(signal.SIGSTOP)
+            os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+            if self.temporaries():  # none between its two surfaces
+                return process
+            process.send_signal(signal.SIGCONT)
 
     def test_go_with_the_next_run_and_not_before_their_process(self):
         process = self.start()

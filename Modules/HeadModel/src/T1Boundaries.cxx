@@ -543,10 +543,11 @@ std::vector<float> brainPart(const VolumeView& brainMask, const Head& head) {
 /// Where a guess took the dura for brain, since a contrast agent made it as bright: the part of the
 /// guess's rim that is bright, within 6 mm. Empty without an agent. Then 4 to 20 % of the rim are
 /// bright, .23 to .39 of what is in the cortex below (ch2 and copies of it with noise, bias,
-/// lesions, an infant's skull); with a bright dura 37 to 66 %, .96 to 2.3 of it. Brains without a
-/// cortex (phantoms) and newborns', whose cortex is the brighter, say nothing.
+/// lesions, an infant's skull); with a bright dura 37 to 66 %, .96 to 2.3 of it. Where grey matter
+/// is so dark that white matter alone is found, as at 7 T, 36 %, .71 of it. Brains without a cortex
+/// (phantoms) and newborns', whose cortex is the brighter, say nothing.
 std::vector<float> duraShare(const Mask& guess, const Head& head) {
-    constexpr double kRimMm = 1.5, kBright = 0.9, kLeastShare = 0.25, kLeastRatio = 0.6;
+    constexpr double kRimMm = 1.5, kBright = 0.9, kLeastShare = 0.25, kLeastRatio = 0.8;
     constexpr double kMostBrightCortex = 0.8, kSpreadMm = 6, kLeastYears = 1;
     if (head.usual.ageYears < kLeastYears) return {};
     const double bright = std::lerp(head.levels.air, head.levels.tissue, kBright);
