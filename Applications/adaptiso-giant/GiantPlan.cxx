@@ -110,7 +110,7 @@ GiantPlan planFrom(const Json& json) {
     return plan;
 }
 
-/// What is wrong with the values; may be empty.
+/// Returns the key of the first value outside its range, or why the tiles do not fit. Empty: sound.
 std::string faultOf(const GiantPlan& plan) {
     constexpr std::int64_t kMost = 1 << 20;
     for (const std::int64_t extent : plan.geometry.size) {

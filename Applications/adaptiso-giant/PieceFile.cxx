@@ -100,7 +100,7 @@ private:
     std::size_t at_ = 0;
 };
 
-/// What the header says of the parts behind it.
+/// Numbers of rows behind the header, by kind.
 struct Counts {
     std::uint64_t components, border, edges, points, triangles;
 

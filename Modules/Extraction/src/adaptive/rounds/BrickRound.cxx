@@ -148,7 +148,7 @@ struct Nearness {
     std::vector<std::uint8_t> isInWeb;    ///< see PatchLimits::webMm
 };
 
-/// Of noise only where there is a single sheet for sure.
+/// A brick of noise is not searched: its vertices are known to be alone, or taken as near others.
 Nearness nearnessOf(const FineBrick& made, const MetricFrame& frame, double webMm) {
     const std::vector<FineVertex>& vertices = made.surface.vertices;
     Nearness near;

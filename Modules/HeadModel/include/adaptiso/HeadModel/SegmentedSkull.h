@@ -49,8 +49,9 @@ struct SkullComparison {
 SkullComparison compareSkull(const TriangleMesh& innerSkull, const TriangleMesh& outerSkull,
                              const SegmentedHead& head);
 
-/// Of places in the model's skull, those in its holes: the nearest triangle of the inner skull has
-/// a vertex in one, and the segmentation has no skull there.
+/// Returns for each place in the model's skull (LPS mm) whether it lies in a hole: the nearest
+/// triangle of the inner skull has a vertex of holeVertices, and the segmentation has no skull at
+/// the place.
 /// \pre comparison is compareSkull(innerSkull, ..., head)
 std::vector<bool> areInHoles(const std::vector<Vec3>& placesMm, const TriangleMesh& innerSkull,
                              const SkullComparison& comparison, const SegmentedHead& head);
