@@ -384,7 +384,9 @@ for (const browserName of kBrowsers) {
 
       await tabTo("#scan-files");
       await page.evaluate(() => { delete document.body.dataset.scan; });
-      const [chooser] = await Promise.all([page.waitForFileChooser(), keyboard.press(" ")]);
+      const chosen = page.waitForFileChooser();
+      await page.evaluate(() => 0);  // input overtakes commands where the page is busy
+      const [chooser] = await Promise.all([chosen, keyboard.press(" ")]);
       await chooser.accept([join(folder, "large.nii")]);
       await page.waitForFunction(() => document.body.dataset.scan === "large.nii", { timeout: 60_000 });
       await tabTo("#iso-slider");
