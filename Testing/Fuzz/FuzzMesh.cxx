@@ -39,7 +39,7 @@ void requireSound(const MeshFile& file) {
 
 /// \param isKnown  the format is; else content tells
 void decode(std::string_view bytes, const MeshReadOptions& options, bool isKnown = true) {
-    static const MeshFormat& format = findMeshFormat("fuzzed" + fuzz::ending());
+    static const MeshFormat format = findMeshFormat("fuzzed" + fuzz::ending());
     try {
         const MeshFile file = isKnown ? decodeMesh(bytes, format, "fuzzed", options)
                                       : decodeMesh(bytes, "fuzzed" + fuzz::ending(), options);
