@@ -35,7 +35,11 @@ release() {
     rm -rf "$2"
     mkdir -p "$2"
     cmake --log-level=ERROR -S "$1" -B "$1/build/release" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-        -DADAPTISO_BUILD_TESTING=OFF -DADAPTISO_BUILD_SITE=ON
+        -DADAPTISO_BUILD_TESTING=OFF -DADAPTISO_BUILD_PYTHON=ON -DADAPTISO_BUILD_SITE=ON
+    if ! compgen -G "$1/build/release/Modules/Report/niivue/package/dist/*" >/dev/null; then
+        echo "release.sh: npm's registry is not reached: reports would have no viewer (niivue)" >&2
+        exit 1
+    fi
     cmake --build "$1/build/release"
     "$1/Packaging/debian.sh" source "$2"
     "$1/Packaging/debian.sh" binary "$2" "$1/build/release"

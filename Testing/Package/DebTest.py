@@ -63,6 +63,19 @@ class Packages(ApplicationTest):
         self.use_library()
         self.use_python()
 
+    def test_build_without_python_makes_no_empty_package_of_it(self):
+        self.path("source").mkdir()
+        self.path("source/CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(partial NONE)\n"
+            "foreach(component programs development vtk)\n"
+            "install(FILES CMakeLists.txt DESTINATION share/${component} COMPONENT ${component})\nendforeach()\n")
+        output("cmake", "-S", self.path("source"), "-B", self.path("partial"))
+        done = subprocess.run([SOURCE / "Packaging" / "debian.sh", "binary", self.path("debs"), self.path("partial")],
+                              text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn(f"{self.path('partial')} lacks what python3-adaptiso is made of", done.stdout)
+        self.assertEqual(list(self.path("debs").glob("*.deb")), [])
+
     def look_at_fields(self):
         for package in self.debs:
             self.assertEqual(self.field(package, "Version"), REVISION)
