@@ -26,15 +26,6 @@ TESTS = ("BemElectrodesTest", "BemSurfacesTest", "BemTest", "BemTetrahedraTest",
 
 #: Tests that the package cannot pass, by the reason; "CheckTest" or "CheckTest.Truth" stands for all of it.
 LEFT_OUT = {
-    "no resampling": (
-        "CheckTest.Truth.test_isosurface_of_a_preprocessed_volume", "InfoTest.Info.test_the_image_is_told_as_preprocessed",
-        "PreprocessTest.Preprocessing.test_blending_labels_is_warned_of",
-        "PreprocessTest.Preprocessing.test_labels_are_resampled_by_the_nearest_voxel",
-        "PreprocessTest.Preprocessing.test_resampling_keeps_the_sphere",
-        "PreprocessTest.Preprocessing.test_the_order_is_fixed_and_threads_change_nothing",
-        "PreprocessTest.Preprocessing.test_the_report_says_what_was_done",
-        "PreprocessTest.Refusals.test_lengths_that_do_not_fit", "PreprocessTest.Refusals.test_values_that_are_not_finite",
-        "WordsTest.WrongCommandLines.test_get_one_line_that_helps"),
     "no pictures and HTML reports": (
         "BemElectrodesTest.Electrodes.test_a_page_shows_them",
         "BemSurfacesTest.Surfaces.test_what_cannot_be_guaranteed_gives_the_report_alone_and_says_where",

@@ -52,7 +52,7 @@ std::string_view toString(Interpolation interpolation);
 /// \throws InvalidInput unless 0 < stepMm < infinity, and 2 steps or more fit along every axis
 ImageGeometry isotropicGrid(const ImageGeometry& geometry, double stepMm);
 
-/// Samples a volume on isotropicGrid() (itk::ResampleImageFilter).
+/// Samples a volume on isotropicGrid() with the numbers of itk::ResampleImageFilter.
 ///
 /// Does not smooth: for steps larger than the voxels smooth first (half a step is
 /// enough), or detail finer than the step turns into noise. Points of the grid that lie outside a
