@@ -20,8 +20,6 @@ umask 022
 for component in programs python; do
     cmake --install "$build" --component $component --strip --prefix "$tree" >/dev/null
 done
-# ITK's readers of further formats would bring 18 MB of libraries, packed.
-find "$tree/lib" -type d -name itk -exec rm -r {} +
 mkdir -p "$tree/lib/c++"
 cp "$top/LICENSE" "$tree"
 if [ -d "$tree/lib/python3/dist-packages" ]; then

@@ -125,7 +125,7 @@ recordBytes() {
     sha256sum <"$1" | sed 's/ .*/  ch2bet at 100/' >>"$work/summary"
 }
 
-# The package $deb on a Debian of its own, that which has the package's ITK: installed by apt with what
+# The package $deb on a Debian of its own, that which has the package's GDCM: installed by apt with what
 # it depends on, and no more, then used as a user does, on a scan that is brought along.
 tryPackage() {
     local scan=/usr/share/mricron/templates/ch2bet.nii.gz
@@ -134,8 +134,8 @@ tryPackage() {
     root=$work/machine
     inside=/root
     case $(dpkg-deb -f "$deb" Depends) in
-        *libinsighttoolkit5.2*) makeRoot bookworm ;;
-        *libinsighttoolkit5.4*) makeRoot trixie ;;
+        *libgdcm3.0t64*) makeRoot trixie ;;
+        *libgdcm3.0*) makeRoot bookworm ;;
         *)
             echo "try.sh: $deb is for neither Debian 12 nor 13" >&2
             return 1

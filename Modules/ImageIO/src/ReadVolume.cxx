@@ -149,11 +149,13 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
         detail::refuse(input, "is compressed as a whole, as its format is not",
                        "decompress it, e.g. with gunzip");
     }
-    detail::refuse(input, "not a format that is read here",
-                   std::string("give NIfTI, NRRD, MetaImage, MGH, DICOM, or a folder of Zarr") +
-                       (detail::hasItkReaders() ? ""
-                                                : "; MINC and other formats of ITK need "
-                                                  "libadaptisoItkIO.so, which is not here"));
+    detail::refuse(
+        input, "not a format that is read here",
+        std::string("give NIfTI, NRRD, MetaImage, MGH, DICOM, or a folder of Zarr") +
+            (detail::hasItkReaders()
+                 ? ""
+                 : "; MINC and other formats of ITK need "
+                   "libadaptisoItkIO.so (Debian package adaptiso-itk), which is not here"));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
          level: Optional[int] = None, channel: Optional[int] = None, time: Optional[int] = None,
          all_chunks: bool = False, resample_slices: bool = False) -> Image:
     """Read a scan: NIfTI, NRRD, MetaImage, MGH, Zarr, or DICOM (a file, a folder, a DICOMDIR); MINC
-    and others by ITK's readers, where the programs' libadaptisoItkIO.so is installed.
+    and others by ITK's readers, where libadaptisoItkIO.so (package adaptiso-itk) is installed.
 
     Files are taken for hostile: every length is checked, nothing is padded or guessed, and
     DICOM's compressed pixels are decoded in a child process, so that a damaged file is an
