@@ -54,10 +54,11 @@ Verification verify(const VolumeView& volume, const SpanSpaceIndex& index, const
     }
     const DistanceReport distance = surfaceDistance(written, full);
     const BoundingBox box = boundingBox(full);
-    const double maxMm = distance.combined.maxMm,
-                 boundMm = record.statistics.errorBoundMm.value_or(0) + roundingMm +
-                           kMeasuring * std::max({norm(box.minimum), norm(box.maximum),
-                                                  norm(box.maximum - box.minimum)});
+    const double maxMm = distance.combined.maxMm;
+    double boundMm = record.statistics.errorBoundMm.value_or(0) + roundingMm +
+                     kMeasuring * std::max({norm(box.minimum), norm(box.maximum),
+                                            norm(box.maximum - box.minimum)});
+    if (maxMm > boundMm) boundMm += measuringErrorMm(written) + measuringErrorMm(full);
     require(maxMm <= (1 + kRounding) * boundMm, "a point lies " + formatNumber(maxMm) +
                                                     " mm from the surface of marching cubes, not " +
                                                     formatNumber(boundMm));

@@ -107,12 +107,13 @@ void verify(const VerifiedSurface& surface, SimplifyRun& run) {
                            " keeps too few digits of this surface's coordinates, with which " +
                            fault + "; write .vtp or .ply");
     }
-    const DistanceReport distance = run.statistics.degenerateTriangles == 0
-                                        ? surfaceDistance(surface.written, surface.input)
-                                        : surfaceDistance(surface.written, withArea(surface.input));
-    const double maxMm = distance.combined.maxMm,
-                 boundMm = (1 + kRounding) * run.statistics.errorBoundMm + surface.roundingMm +
-                           kMeasuring * extentOf(surface.input);
+    const TriangleMesh& input = surface.input;
+    const DistanceReport distance = surfaceDistance(
+        surface.written, run.statistics.degenerateTriangles == 0 ? input : withArea(input));
+    const double maxMm = distance.combined.maxMm;
+    double boundMm = (1 + kRounding) * run.statistics.errorBoundMm + surface.roundingMm +
+                     kMeasuring * extentOf(input);
+    if (maxMm > boundMm) boundMm += measuringErrorMm(surface.written) + measuringErrorMm(input);
     if (!(maxMm <= boundMm)) {
         fail("a point lies " + formatNumber(maxMm) + " mm from the input, not " +
              formatNumber(boundMm));

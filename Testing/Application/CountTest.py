@@ -11,6 +11,7 @@ import unittest
 
 from support import BIN, CHECK_FAILED, OK, SOURCE, ApplicationTest, Image, ball, from_function, main, write_nifti
 from pathlib import Path
+from random import Random
 
 BRAIN = Path("/usr/share/mricron/templates/ch2bet.nii.gz")
 HEAD = BRAIN.with_name("ch2.nii.gz")
@@ -104,6 +105,17 @@ class Count(ApplicationTest):
                                   "-o", "ball.vtp")
         self.assertEqual(done.returncode, CHECK_FAILED)
         self.assertFalse(self.path("ball.vtp").exists())
+
+    # Whole numbers at the isovalue: marching cubes makes slivers of 1,200 to 1 there, of which none can go here
+    def test_slivers_as_far_as_rounding_from_themselves_are_verified(self):
+        random = Random(1)
+        noise = [random.randrange(4) for _ in range(16 ** 3)]
+        write_nifti(self.path("noise.nii"), Image((16, 16, 16), "B", noise, spacing=(1, 1, 20)))
+        done, _, surface = self.surface("noise.nii", "--iso", 1, "--verify", "-o", "noise.vtp")
+        self.assertEqual((done.returncode, done.stderr), (OK, ""))
+        self.assertEqual(surface["errorBoundMm"], 0)
+        done = self.run_program("adaptiso-simplify", "noise.vtp", "--triangles", "100000", "-o", "same.vtp")
+        self.assertEqual(done.returncode, OK, done.stderr)
 
     def test_that_the_bound_does_not_allow_is_no_warning(self):
         write_nifti(self.path("ball.nii"), ball())

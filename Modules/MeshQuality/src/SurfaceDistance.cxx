@@ -237,6 +237,10 @@ DistanceReport surfaceDistance(const TriangleMesh& a, const TriangleMesh& b,
     return report;
 }
 
+double measuringErrorMm(const TriangleMesh& mesh) {
+    return surfaceDistance(mesh, mesh, {.isSymmetric = false}).combined.maxMm;
+}
+
 std::vector<double> vertexDistancesMm(const TriangleMesh& from, const TriangleMesh& to) {
     const AabbTree tree(to);
     std::vector<double> distances(from.points.size());

@@ -57,6 +57,10 @@ struct DistanceReport {
 DistanceReport surfaceDistance(const TriangleMesh& a, const TriangleMesh& b,
                                const DistanceOptions& options = {});
 
+/// Largest distance that surfaceDistance() measures from a mesh to itself, mm: the rounding of its
+/// distances. It grows with the square of a triangle's length over its height.
+double measuringErrorMm(const TriangleMesh& mesh);
+
 /// The distance from each vertex of `from` to the surface `to`. \pre `to` has a triangle
 std::vector<double> vertexDistancesMm(const TriangleMesh& from, const TriangleMesh& to);
 
