@@ -38,7 +38,7 @@ std::string faultText(const TypedVolumeView<T>& view, const Index3& at) {
                        std::to_string(at[2]) + ") holds ";
     const auto number = static_cast<double>(value);
     const bool isWhole = std::isfinite(number) && number == std::floor(number);
-    text += isWhole ? formatNumber(number) : formatShort(number);
+    text += isWhole ? formatNumber(number) : formatApart({number, std::round(number)}).front();
     return text + (isWhole ? ", beyond the labels that are read, -2147483647 to 2147483647"
                            : ", which is no whole number, so this is no label map");
 }

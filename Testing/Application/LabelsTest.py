@@ -314,6 +314,10 @@ class RefusalTest(LabelsTest):
         write_nifti(self.path("real.nii"), image)
         self.refused(BAD_INPUT, r"real.nii: voxel \(3, 4, 5\) holds 0.375, which is no whole number",
                      "real.nii", "-o", "out")
+        image.samples[0] = 3 + 2 ** -21  # a float of its own, which six digits write as 3
+        write_nifti(self.path("near.nii"), image)
+        self.refused(BAD_INPUT, r"near.nii: voxel \(0, 0, 0\) holds 3.0000005, which is no whole number",
+                     "near.nii", "-o", "out")
         image.samples[0] = float("nan")
         write_nifti(self.path("nan.nii"), image)
         self.refused(BAD_INPUT, r"nan.nii: voxel \(0, 0, 0\) holds not a number", "nan.nii", "-o",
