@@ -107,7 +107,7 @@ void addGiantSeeds(Seeds& seeds) {
         piece.mesh =
             extractTile(volume, {0, 0, 0}, volume.geometry(), isovalue, plan.cut(), {0, 0, 0});
         if (isOpen && !piece.mesh.triangles.empty()) piece.mesh.triangles.pop_back();
-        piece.mesh = withoutUnusedPoints(piece.mesh);
+        piece.mesh = withoutUnusedPoints(std::move(piece.mesh));
         summarize(piece.mesh, volume.geometry(), piece.summary);
         seeds.add("giant", std::string(1, '\0') + encodePiece(piece));
     }

@@ -12,7 +12,6 @@
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/MeshSurface.h"
-#include "adaptive/full/NearestNormals.h"
 #include "repair/MeshParts.h"
 
 namespace adaptiso {

@@ -66,24 +66,14 @@ private:
     bool keepsPromises(Attempt& attempt) {
         attempt.error = attempt.proof.prove(attempt.surface);
         attempt.surface.returnFreedMemory();
-        if (!keepsDistances(attempt)) return false;
-        findCrossings(attempt);
         double reachMm = kUndoReach * frame_.narrowestMm();
-        for (int n = 0; !attempt.crossing.empty(); ++n) {
-            std::optional<SurfaceChanges> changes;
-            if (n < kMostMends) changes = mendCrossings(attempt);
-            if (!changes) {
-                if (reachMm > farthestMm()) return false;
-                changes = undoAround(attempt.surface, {},
-                                     cornersOf(attempt.surface, attempt.crossing), reachMm);
-                reachMm *= 2;
-            }
-            if (!changes) continue;
-            attempt.error = attempt.proof.proveAgain(attempt.surface, *changes);
-            if (!keepsDistances(attempt)) return false;
+        for (int n = 0; keepsDistances(attempt); ++n) {
             findCrossings(attempt);
+            if (attempt.crossing.empty()) return true;
+            if (n < kMostMends && mendCrossings(attempt)) continue;
+            if (!takeBack(attempt, cornersOf(attempt.surface, attempt.crossing), reachMm)) break;
         }
-        return true;
+        return false;
     }
 
     /// After mending as many triangles are left as are wanted, or as were before.
@@ -129,13 +119,9 @@ private:
     /// does not help; proves what was changed.
     bool keepsDistances(Attempt& attempt) {
         if (isBeyond(attempt.error)) mend(attempt);
-        for (double reachMm = kUndoReach * frame_.narrowestMm(); isBeyond(attempt.error);
-             reachMm *= 2) {
-            if (reachMm > farthestMm()) return false;
-            const auto changes = undoAround(attempt.surface, trianglesOf(attempt.error),
-                                            pointsOf(attempt.error), reachMm);
-            if (!changes) continue;
-            attempt.error = attempt.proof.proveAgain(attempt.surface, *changes);
+        double reachMm = kUndoReach * frame_.narrowestMm();
+        while (isBeyond(attempt.error)) {
+            if (!takeBack(attempt, attempt.error.beyondLimit, reachMm)) return false;
             mend(attempt);
         }
         return true;
@@ -163,15 +149,21 @@ private:
         mended_.insert(mended_.end(), changed.begin(), changed.end());
     }
 
-    std::optional<SurfaceChanges> undoAround(SimplifiedSurface& surface,
-                                             const std::vector<SurfaceState::Number>& triangles,
-                                             const std::vector<Vec3>& places, double reachMm) {
-        if (surface.heirs.empty()) return {};
+    /// Takes the simplification back around places, as far as anything comes of it, and proves what
+    /// was changed. \param reachMm  doubled each time
+    /// \return false where all of the surface is the full one already
+    bool takeBack(Attempt& attempt, const std::vector<PlaceBeyond>& places, double& reachMm) {
+        SimplifiedSurface& surface = attempt.surface;
         const std::ptrdiff_t points = std::ssize(surface.points);
-        auto changes =
-            LocalUndo(full_.fineOf(surface), surface).around(mended_, triangles, places, reachMm);
+        std::optional<SurfaceChanges> changes;
+        while (!changes && !surface.heirs.empty() && reachMm <= 4 * full_.largestExtentMm()) {
+            changes = LocalUndo(full_.fineOf(surface), surface).around(mended_, places, reachMm);
+            reachMm *= 2;
+        }
+        if (!changes) return false;
         work_.verticesUndone += std::ssize(surface.points) - points;
-        return changes;
+        attempt.error = attempt.proof.proveAgain(surface, *changes);
+        return true;
     }
 
     /// Triangles with places beyond the bound, each once: some have hundreds of places.
@@ -184,31 +176,28 @@ private:
         triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
         return triangles;
     }
-    static std::vector<Vec3> pointsOf(const ErrorBound& error) {
-        std::vector<Vec3> points;
-        for (const PlaceBeyond& place : error.beyondLimit) points.push_back(place.point());
-        return points;
-    }
 
-    static std::vector<Vec3> cornersOf(const SurfaceState& surface,
-                                       const std::vector<std::int64_t>& triangles) {
-        std::vector<Vec3> corners;
+    static std::vector<PlaceBeyond> cornersOf(const SurfaceState& surface,
+                                              const std::vector<std::int64_t>& triangles) {
+        std::vector<PlaceBeyond> corners;
         for (const std::int64_t t : triangles) {
-            for (const std::uint64_t v : surface.triangles[t]) corners.push_back(surface.points[v]);
+            for (const std::uint64_t v : surface.triangles[t]) {
+                corners.push_back({surface.points[v], surface.points[v]});
+            }
         }
         return corners;
     }
-    /// No undo goes farther: then all of the surface is the full one.
-    double farthestMm() const { return 4 * full_.largestExtentMm(); }
 
-    std::optional<SurfaceChanges> mendCrossings(Attempt& attempt) {
+    bool mendCrossings(Attempt& attempt) {
         SurfaceMender mender(attempt.surface, frame_, boundMm_.value_or(attempt.error.largestMm),
                              full_.box());
         const std::size_t mended = mender.mendCrossings(attempt.crossing, wanted_.isGiven());
         work_.placesMended += static_cast<std::int64_t>(mended);
         keepChanged(mender);
-        if (mended == 0) return {};
-        return mender.takeChanges();
+        if (mended > 0) {
+            attempt.error = attempt.proof.proveAgain(attempt.surface, mender.takeChanges());
+        }
+        return mended > 0;
     }
 
     std::optional<double> boundOf(const AdaptiveOptions& adaptive) const {

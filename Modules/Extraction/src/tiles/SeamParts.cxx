@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Tiles.h"
@@ -18,24 +19,28 @@ BoundingBox extentOf(const TriangleMesh& mesh, const Triangle& t) {
 
 }  // namespace
 
-TriangleMesh withoutUnusedPoints(const TriangleMesh& mesh) {
+TriangleMesh withoutUnusedPoints(TriangleMesh mesh) {
     constexpr VertexId kUnused = -1;
     std::vector<VertexId> number(mesh.points.size(), kUnused);
     for (const Triangle& t : mesh.triangles) {
         for (const VertexId v : t) number[v] = 0;
     }
-    TriangleMesh used;
+    VertexId used = 0;
     for (std::size_t v = 0; v < number.size(); ++v) {
         if (number[v] == kUnused) continue;
-        number[v] = std::ssize(used.points);
-        used.points.push_back(mesh.points[v]);
-        if (!mesh.normals.empty()) used.normals.push_back(mesh.normals[v]);
+        number[v] = used++;
+        mesh.points[number[v]] = mesh.points[v];
+        if (!mesh.normals.empty()) mesh.normals[number[v]] = mesh.normals[v];
     }
-    used.triangles.reserve(mesh.triangles.size());
-    for (const auto& [a, b, c] : mesh.triangles) {
-        used.triangles.push_back({number[a], number[b], number[c]});
+    if (used == std::ssize(mesh.points)) return mesh;
+    mesh.points.resize(used);
+    mesh.points.shrink_to_fit();
+    if (!mesh.normals.empty()) mesh.normals.resize(used);
+    mesh.normals.shrink_to_fit();
+    for (Triangle& t : mesh.triangles) {
+        for (VertexId& v : t) v = number[v];
     }
-    return used;
+    return mesh;
 }
 
 namespace {
@@ -71,7 +76,7 @@ SeamPart seamPartOf(const TriangleMesh& tiles, const TileCut& cut, const Index3&
         part.mesh.triangles.push_back(t);
         part.isFixed.push_back(static_cast<std::uint8_t>(!(isIn && isNear)));
     }
-    part.mesh = withoutUnusedPoints(part.mesh);
+    part.mesh = withoutUnusedPoints(std::move(part.mesh));
     return part;
 }
 
@@ -93,7 +98,7 @@ TriangleMesh ownTriangles(const SimplifiedPart& part, const TileCut& cut, const 
         }
         own.triangles.push_back(part.mesh.triangles[t]);
     }
-    return withoutUnusedPoints(own);
+    return withoutUnusedPoints(std::move(own));
 }
 
 }  // namespace adaptiso

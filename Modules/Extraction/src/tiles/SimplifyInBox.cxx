@@ -10,7 +10,6 @@
 #include "adaptiso/SurfaceProof/HalfEdges.h"
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/full/MeshSurface.h"
-#include "adaptive/full/NearestNormals.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "repair/MeshParts.h"
 #include "tiles/TileGrid.h"
@@ -108,7 +107,7 @@ public:
             mesh.triangles.push_back(whole.triangles[t]);
             isKept.push_back(isWholeKept[t]);
         }
-        mesh = withoutUnusedPoints(mesh);
+        mesh = withoutUnusedPoints(std::move(mesh));
     }
 
     /// Joins the part and the triangles that were left out, by the bits of their points.

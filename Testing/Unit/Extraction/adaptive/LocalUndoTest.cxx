@@ -37,7 +37,7 @@ struct CoarseSphere {
         limits.maxCost = 1e6;
         limits.maxDistanceMm = 0.1;
         for (const std::int64_t shift : {0, 16}) {
-            detail::PatchRound(surface, {32, {shift, shift, shift}}, unitFrame()).run({limits});
+            detail::runPatchRound(surface, {32, {shift, shift, shift}}, unitFrame(), {limits});
         }
         coarse = surface;
         heirs = surface.heirs;
@@ -45,7 +45,7 @@ struct CoarseSphere {
 
     detail::LocalUndo undo() { return {{start.points, start.triangles}, surface}; }
     std::optional<detail::SurfaceChanges> undoAround(const Vec3& place, double reachMm) {
-        return undo().around({}, {}, {place}, reachMm);
+        return undo().around({}, {{place, place}}, reachMm);
     }
 
     detail::SimplifiedSurface surface;
@@ -252,8 +252,11 @@ TEST(LocalUndo, TakesBackWhatCrosses) {
         if (crossing.empty()) continue;
         ++crossed;
         for (int n = 0; n < kTimes && !crossing.empty(); ++n) {
-            const std::vector<SurfaceState::Number> seeds(crossing.begin(), crossing.end());
-            if (!pulled.undo().around({}, seeds, {}, 1)) break;
+            std::vector<detail::PlaceBeyond> places;  // farther than the reach from all vertices
+            for (const std::int64_t t : crossing) {
+                places.push_back({{}, {}, static_cast<SurfaceState::Number>(t)});
+            }
+            if (!pulled.undo().around({}, places, 1)) break;
             expectSound(meshOf(pulled.surface));
             crossing = crossingTriangles(meshOf(pulled.surface));
         }
@@ -293,7 +296,7 @@ TEST(LocalUndo, TakesMendedTrianglesBackToo) {
     ASSERT_GT(mender.mendDistances(places), 3U);
     const std::size_t mended = sphere.surface.points.size();
     ASSERT_GT(mended, sphere.coarse.points.size());
-    ASSERT_TRUE(sphere.undo().around(mender.changedTriangles(), {}, {place}, 1));
+    ASSERT_TRUE(sphere.undo().around(mender.changedTriangles(), {{place, place}}, 1));
     const TriangleMesh mesh = meshOf(sphere.surface);
     expectSound(mesh);
     // all of it hung together, and every vertex is one of the rounds' again

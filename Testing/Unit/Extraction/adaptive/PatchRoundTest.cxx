@@ -11,7 +11,6 @@
 namespace adaptiso::testing {
 namespace {
 
-using detail::PatchRound;
 using detail::PatchWork;
 using detail::SimplifiedSurface;
 
@@ -30,7 +29,7 @@ struct Ball {
         return limits;
     }
     void run(const PatchWork& work, const detail::PatchCut& cut = kCut) {
-        PatchRound(surface, cut, scene.frame).run(work);
+        runPatchRound(surface, cut, scene.frame, work);
     }
 
     double squaredDistance(std::size_t s) const {

@@ -13,9 +13,10 @@ using detail::SimplifiedSurface;
 TEST(PatchGroups, PutBackWhatTheyTook) {
     PatchedBall ball;
     detail::SimplifiedSurface after = ball.surface;
+    std::vector<std::uint32_t> mergedInto;
     for (std::size_t n = 0; n < ball.groups.count(); ++n) {
         const Patch patch = ball.groups.take(n, ball.scratch);
-        ball.groups.putBack(n, patch, ball.scratch, after);
+        ball.groups.putBack(n, patch, after, mergedInto);
     }
     EXPECT_EQ(after.points, ball.surface.points);
     EXPECT_EQ(after.triangles, ball.surface.triangles);
@@ -26,6 +27,7 @@ TEST(PatchGroups, PutBackWhatTheyTook) {
 TEST(PatchGroups, PutBackWhatChangedAndNothingElse) {
     PatchedBall ball;
     detail::SimplifiedSurface after = ball.surface;
+    std::vector<std::uint32_t> mergedInto;
     std::size_t n = 0;
     while (ball.groups.triangleCount(n) < 20) ++n;
     Patch patch = ball.groups.take(n, ball.scratch);
@@ -34,7 +36,7 @@ TEST(PatchGroups, PutBackWhatChangedAndNothingElse) {
     patch.states[3] = Patch::State::Fitted;
     const Key gone = keyOf(patch, 7);
     patch.triangles[7].fill(Patch::kGone);
-    ball.groups.putBack(n, patch, ball.scratch, after);
+    ball.groups.putBack(n, patch, after, mergedInto);
     int moved = 0, removed = 0;
     for (std::size_t v = 0; v < after.points.size(); ++v) {
         if (after.points[v] == ball.surface.points[v]) continue;

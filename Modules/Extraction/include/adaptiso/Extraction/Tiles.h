@@ -130,7 +130,7 @@ SeamPart seamPartOf(const TriangleMesh& tiles, const TileCut& cut, const Index3&
 TriangleMesh ownTriangles(const SimplifiedPart& part, const TileCut& cut, const Index3& seam);
 
 /// A mesh without the points that no triangle uses.
-TriangleMesh withoutUnusedPoints(const TriangleMesh& mesh);
+TriangleMesh withoutUnusedPoints(TriangleMesh mesh);
 
 /// The volume's axes are at right angles as nearly as simplifyInBox() needs it.
 bool canSimplifyInBoxes(const ImageGeometry& geometry);

@@ -53,6 +53,7 @@ void addFans(const BoxCase& boxCase, const CellCrossings& crossings, const Verte
         vertex.edge = EdgeKey::make({0, 0, 0}, kCellCentre);
         vertex.isSingleSheet = false;
         surface.vertices.push_back(vertex);
+        ++surface.middles;
         for (std::size_t i = 0; i < loop.size(); ++i) {
             surface.triangles.push_back({centre, ring[i], ring[(i + 1) % loop.size()]});
         }
@@ -119,13 +120,10 @@ void BrickMesher::mesh(const Brick& brick, FineSurface& surface) {
     slots_.clear();
     surface.vertices.clear();
     surface.triangles.clear();
-    surface.cellsSeen = surface.cellsCrossed = 0;
+    surface.cellsSeen = surface.cellsCrossed = surface.middles = 0;
     for (const std::uint32_t block : brick.blocks) {
         meshBlock(brick, block, surface);
     }
-    surface.middles = static_cast<std::size_t>(
-        std::count_if(surface.vertices.begin(), surface.vertices.end(),
-                      [](const FineVertex& v) { return v.edge.axis() == kCellCentre; }));
 }
 
 void BrickMesher::findGaps(const Brick& brick, FineSurface& surface) const {

@@ -54,7 +54,7 @@ struct FineSurface {
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< outward in index space
 
     /// Loops filled from their middle, which takes two triangles more than the table's.
-    std::size_t middles = 0;
+    std::int64_t middles = 0;
 
     std::int64_t cellsSeen = 0, cellsCrossed = 0;  ///< of the active blocks
 };

@@ -110,39 +110,21 @@ void CrossingGuard::markPieces() {
         std::uint32_t& number = numbers[sets.find(t[0])];
         if (number != kNoEntries) continue;
         number = static_cast<std::uint32_t>(marks_.size());
-        marks_.push_back({t[0], entriesAt_.size()});
+        marks_.push_back(t[0]);
     }
     if (marks_.size() < 2) return;
     pieceOf_.resize(patch_.points.size());
     for (std::size_t v = 0; v < pieceOf_.size(); ++v) {
         pieceOf_[v] = numbers[sets.find(static_cast<std::int64_t>(v))];
     }
-    marksAt_.assign(entriesAt_.size(), kNoEntries);
-    for (std::uint32_t piece = 0; piece < marks_.size(); ++piece) enterMark(piece);
-}
-
-void CrossingGuard::enterMark(std::uint32_t piece) {
-    Mark& mark = marks_[piece];
-    const Vec3& p = patch_.points[mark.vertex];
-    const Cubes cubes = cubesOf(rounded({p, p}));
-    std::size_t cube = 0;
-    forEachRow(cubes, [&](std::size_t row, std::int32_t, std::int32_t) {
-        cube = row + static_cast<std::size_t>(cubes.first[0]);
-    });
-    if (cube == mark.cube) return;
-    mark.cube = cube;
-    markEntries_.push_back({piece, marksAt_[cube]});
-    marksAt_[cube] = static_cast<std::uint32_t>(markEntries_.size() - 1);
 }
 
 /// A mark that the change moves goes to the ring, which stays.
 void CrossingGuard::moveMark(const Star& star) {
     if (pieceOf_.empty()) return;
-    const std::uint32_t piece = pieceOf_[star.ring[0]], vertex = marks_[piece].vertex;
+    std::uint32_t& mark = marks_[pieceOf_[star.ring[0]]];
     const auto end = star.apex.begin() + star.count;
-    if (!star.isOpen && std::find(star.apex.begin(), end, vertex) == end) return;
-    marks_[piece].vertex = star.ring[0];
-    enterMark(piece);
+    if (star.isOpen || std::find(star.apex.begin(), end, mark) != end) mark = star.ring[0];
 }
 
 CrossingGuard::Cubes CrossingGuard::cubesOf(const Box& box) const {
@@ -196,11 +178,6 @@ const CrossingGuard::Box& CrossingGuard::boxAt(std::uint32_t triangle) {
         known.hasBox = true;
     }
     return known.box;
-}
-
-Corners CrossingGuard::cornersOf(std::uint32_t triangle) const {
-    const auto& t = patch_.triangles[triangle];
-    return {patch_.points[t[0]], patch_.points[t[1]], patch_.points[t[2]]};
 }
 
 CrossingGuard::Box CrossingGuard::rounded(const BoundingBox& box) {
@@ -275,19 +252,10 @@ bool CrossingGuard::sweepsOver(const ChangedStar& changed) const {
                            });
     };
     const std::uint32_t own = pieceOf_[star.ring[0]];
-    const Cubes cubes = cubesOf(rounded(swept));
-    bool found = false;
-    forEachRow(cubes, [&](std::size_t row, std::int32_t, std::int32_t) {
-        for (std::int32_t x = cubes.first[0]; !found && x <= cubes.last[0]; ++x) {
-            for (std::uint32_t at = marksAt_[row + x]; at != kNoEntries;
-                 at = markEntries_[at].next) {
-                const Mark& mark = marks_[markEntries_[at].piece];
-                found = found || (mark.cube == row + x && markEntries_[at].piece != own &&
-                                  isSwept(patch_.points[mark.vertex]));
-            }
-        }
-    });
-    return found;
+    for (std::uint32_t piece = 0; piece < marks_.size(); ++piece) {
+        if (piece != own && isSwept(patch_.points[marks_[piece]])) return true;
+    }
+    return false;
 }
 
 /// Some triangle across an edge of the ring faces away from the star.

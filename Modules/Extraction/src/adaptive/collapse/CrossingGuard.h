@@ -82,7 +82,7 @@ private:
     void forEachRow(const Cubes& cubes, const F& f) const;
     void enter(std::uint32_t triangle);
     const Box& boxAt(std::uint32_t triangle);
-    Corners cornersOf(std::uint32_t triangle) const;
+    Corners cornersOf(std::uint32_t triangle) const { return patch_.view().cornersOf(triangle); }
     bool foldsBack(const ChangedStar& changed) const;
     bool wedgesAreClear(const ChangedStar& changed) const;
     bool fanIsClear(const ChangedStar& changed, int at) const;
@@ -92,7 +92,6 @@ private:
     void collectFromGrid();
     void addNear(std::uint32_t triangle);
     void markPieces();
-    void enterMark(std::uint32_t piece);
     void moveMark(const Star& star);
     bool sweepsOver(const ChangedStar& changed) const;
 
@@ -112,17 +111,8 @@ private:
     std::array<std::array<float, Star::kMost>, 3> wedgeLow_{}, wedgeHigh_{};  ///< by axis
     std::array<bool, Star::kMost + 1> fanIsClear_{};  ///< of each vertex of the ring
 
-    struct Mark {
-        std::uint32_t vertex;
-        std::size_t cube;  ///< that it was last entered in
-    };
-    struct MarkEntry {
-        std::uint32_t piece, next;
-    };
     std::vector<std::uint32_t> pieceOf_;  ///< of each vertex; empty where all are of one piece
-    std::vector<Mark> marks_;             ///< of each piece
-    std::vector<std::uint32_t> marksAt_;  ///< the first entry of each cube
-    std::vector<MarkEntry> markEntries_;  ///< some are of marks that have moved since
+    std::vector<std::uint32_t> marks_;    ///< of each piece: one of its vertices
 };
 
 }  // namespace adaptiso::detail

@@ -65,7 +65,7 @@ MeshSurface::MeshSurface(const TriangleMesh& input, const MeshParts& parts,
                          std::optional<double> boundMm)
     : FullSurface(frameOf(voxelOf(parts, boundMm))), input_(input), parts_(parts) {
     for (const std::int64_t t : parts.crossing) {
-        Corners corners = cornersOf(static_cast<std::size_t>(t));
+        Corners corners = parts.view().cornersOf(t);
         for (Vec3& p : corners) p = p + parts.origin;
         crossing_.push_back(corners);
     }
@@ -100,14 +100,14 @@ InsideOutPieces MeshSurface::judge(const TriangleView& surface,
 }
 
 std::vector<std::int64_t> MeshSurface::insideOut(const SimplifiedSurface& surface) const {
-    InsideOutPieces now = judge({surface.points, surface.triangles}, surface.marks);
+    InsideOutPieces now = judge(surface.view(), surface.marks);
     if (now.count <= mostInsideOut_) return {};
     return std::move(now.triangles);
 }
 
 SimplifiedSurface MeshSurface::firstRound(const PatchLimits& limits, CollapseCosts* costs) const {
     SimplifiedSurface surface = unchanged(limits.keepsHeirs);
-    PatchRound(surface, {}, frame()).run({limits}, costs);
+    runPatchRound(surface, {}, frame(), {limits}, costs);
     return surface;
 }
 
@@ -120,17 +120,9 @@ SimplifiedSurface MeshSurface::unchanged(bool keepsHeirs) const {
     reserveInHugePages(surface.triangles, parts_.triangles.size());
     surface.triangles = parts_.triangles;
     surface.fineTriangles = surface.tableTriangles = std::ssize(surface.triangles);
-    {
-        Around around;
-        around.assign(parts_.points.size(), parts_.triangles.size(),
-                      [&](std::size_t t, const auto& put) {
-                          for (const std::uint32_t v : parts_.triangles[t]) {
-                              put(v, static_cast<std::uint32_t>(t));
-                          }
-                      });
-        const std::vector<Vec3> areas = addPoints(around, surface);
-        addSamples(around, areas, surface);
-    }
+    setQuadrics(surface);
+    surface.states.assign(surface.points.size(), Patch::State::Open);
+    addSamples(areasAround(parts_.view()), surface);
     for (std::size_t v = 0; v < surface.points.size(); ++v) {
         if (!parts_.isKept.empty() && parts_.isKept[v] != 0) {
             surface.states[v] = Patch::State::Final;
@@ -142,29 +134,6 @@ SimplifiedSurface MeshSurface::unchanged(bool keepsHeirs) const {
     }
     if (!parts_.borderEdges.empty()) markBorders(parts_.borderEdges, surface);
     return surface;
-}
-
-/// Quadrics and states. \return the sum of the area vectors around each point
-std::vector<Vec3> MeshSurface::addPoints(const Around& around, SimplifiedSurface& surface) const {
-    const std::size_t count = parts_.points.size();
-    std::vector<Vec3> areas;
-    assignInHugePages(areas, count);
-    assignInHugePages(surface.quadrics, count);
-    surface.states.assign(count, Patch::State::Open);
-    parallelForPieces(static_cast<std::int64_t>(count), kPiece,
-                      [&](std::int64_t begin, std::int64_t end) {
-                          for (std::int64_t v = begin; v < end; ++v) {
-                              Quadric sum;
-                              for (const std::uint32_t t : around.of(v)) {
-                                  const Corners c = cornersOf(t);
-                                  const Vec3 area2 = areaVector2(c[0], c[1], c[2]);
-                                  sum += Quadric::ofTriangle(area2, c[0]);
-                                  areas[v] += area2;
-                              }
-                              surface.quadrics[v] = StoredQuadric::of(sum, parts_.points[v]);
-                          }
-                      });
-    return areas;
 }
 
 /// \param areas  the sums of area vectors around each point \return of each triangle
@@ -182,8 +151,7 @@ std::vector<std::uint8_t> MeshSurface::bentTriangles(const std::vector<Vec3>& ar
 
 /// All points; and the middles of triangles in which the surface bends, as a ridge could pass
 /// unseen there.
-void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& areas,
-                             SimplifiedSurface& surface) const {
+void MeshSurface::addSamples(const std::vector<Vec3>& areas, SimplifiedSurface& surface) const {
     std::vector<std::uint8_t> clearances(parts_.points.size(), 0);
     SheetClearance::fillIn(parts_.points, areas, frame(), clearances);
     const std::vector<std::uint8_t> isBent = bentTriangles(areas);
@@ -198,14 +166,19 @@ void MeshSurface::addSamples(const Around& around, const std::vector<Vec3>& area
         std::ssize(surface.samples), kPiece, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t v = begin; v < end; ++v) {
                 surface.samples[v] = Sample::at(parts_.points[v], areas[v], clearances[v]);
-                surface.sampleTriangle[v] = around.of(v).front();
             }
         });
+    for (std::size_t t = isBent.size(); t-- > 0;) {
+        for (const std::uint32_t v : parts_.triangles[t]) {
+            surface.sampleTriangle[v] = static_cast<SurfaceState::Number>(t);
+        }
+    }
     for (std::size_t t = 0; t < isBent.size(); ++t) {
         if (isBent[t] == 0) continue;
         const MeshParts::Triangle& v = parts_.triangles[t];
-        surface.samples.push_back(Sample::middleOf(
-            cornersOf(t), std::min({clearances[v[0]], clearances[v[1]], clearances[v[2]]})));
+        surface.samples.push_back(
+            Sample::middleOf(parts_.view().cornersOf(t),
+                             std::min({clearances[v[0]], clearances[v[1]], clearances[v[2]]})));
         surface.sampleTriangle.push_back(static_cast<SurfaceState::Number>(t));
     }
 }

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "adaptiso/MeshQuality/Winding.h"
-#include "adaptiso/SurfaceProof/OrderedBuckets.h"
 #include "adaptiso/SurfaceProof/PieceBound.h"
 #include "adaptive/full/FullSurface.h"
 #include "repair/MeshParts.h"
@@ -34,23 +33,18 @@ public:
     double largestExtentMm() const override;
 
 private:
-    using Around = OrderedBuckets<std::uint32_t>;
-
     SimplifiedSurface unchanged(bool keepsHeirs) const;
-    std::vector<Vec3> addPoints(const Around& around, SimplifiedSurface& surface) const;
     InsideOutPieces judge(const TriangleView& surface, std::span<const std::uint32_t> marks) const;
     std::vector<std::uint8_t> bentTriangles(const std::vector<Vec3>& areas) const;
-    void addSamples(const Around& around, const std::vector<Vec3>& areas,
-                    SimplifiedSurface& surface) const;
-    Corners cornersOf(std::size_t t) const {
-        const MeshParts::Triangle& c = parts_.triangles[t];
-        return {parts_.points[c[0]], parts_.points[c[1]], parts_.points[c[2]]};
-    }
-
+    void addSamples(const std::vector<Vec3>& areas, SimplifiedSurface& surface) const;
     const TriangleMesh& input_;
     const MeshParts& parts_;
     std::vector<Corners> crossing_;   ///< triangles of the input that cross others, sorted
     std::int64_t mostInsideOut_ = 0;  ///< pieces of the input that are, or have no volume
 };
+
+/// For each point of `mesh` the normal of `input` at its nearest point, interpolated.
+/// \pre `input` has normals
+std::vector<Normal> normalsFrom(const TriangleMesh& input, const TriangleMesh& mesh);
 
 }  // namespace adaptiso::detail

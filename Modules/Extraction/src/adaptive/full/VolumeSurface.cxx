@@ -6,6 +6,7 @@
 
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Winding.h"
 #include "adaptive/Parameters.h"
@@ -17,52 +18,6 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr std::int64_t kPiece = 1 << 14;
-
-/// Drops vertices without a triangle.
-void dropUnusedVertices(TriangleMesh& mesh) {
-    constexpr VertexId kUnused = -1;
-    std::vector<VertexId> number(mesh.points.size(), kUnused);
-    for (const auto& t : mesh.triangles) {
-        for (const VertexId v : t) number[v] = 0;
-    }
-    VertexId used = 0;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-        if (number[v] == kUnused) continue;
-        number[v] = used++;
-        mesh.points[number[v]] = mesh.points[v];
-        mesh.normals[number[v]] = mesh.normals[v];
-    }
-    if (used == std::ssize(mesh.points)) return;
-    mesh.points.resize(used);
-    mesh.normals.resize(used);
-    for (auto& t : mesh.triangles) {
-        for (VertexId& v : t) v = number[v];
-    }
-}
-
-TriangleMesh toMesh(const SimplifiedSurface& surface, const ImageGeometry& geometry,
-                    const MetricFrame& frame, const LatticeSampler& sampler) {
-    TriangleMesh mesh;
-    assignInHugePages(mesh.points, surface.points.size());
-    assignInHugePages(mesh.normals, surface.points.size());
-    parallelForPieces(std::ssize(mesh.points), kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t v = begin; v < end; ++v) {
-            const Vec3 index = frame.toIndex(surface.points[v]);
-            mesh.points[v] = geometry.toPhysical(index);
-            mesh.normals[v] = toNormal(sampler.normalAt(index));
-        }
-    });
-    reserveInHugePages(mesh.triangles, surface.triangles.size());
-    const bool isMirrored = geometry.isMirrored();
-    for (const auto& t : surface.triangles) {
-        const auto id = [&](int c) { return static_cast<VertexId>(t[c]); };
-        mesh.triangles.push_back(isMirrored ? adaptiso::Triangle{id(0), id(2), id(1)}
-                                            : adaptiso::Triangle{id(0), id(1), id(2)});
-    }
-    dropUnusedVertices(mesh);
-    completeNormals(mesh);
-    return mesh;
-}
 
 }  // namespace
 
@@ -107,7 +62,26 @@ std::uint8_t VolumeSurface::facesAt(const Vec3& point) const {
 }
 
 TriangleMesh VolumeSurface::meshOf(const SimplifiedSurface& surface) const {
-    return toMesh(surface, geometry_, frame(), sampler_);
+    TriangleMesh mesh;
+    assignInHugePages(mesh.points, surface.points.size());
+    assignInHugePages(mesh.normals, surface.points.size());
+    parallelForPieces(std::ssize(mesh.points), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t v = begin; v < end; ++v) {
+            const Vec3 index = frame().toIndex(surface.points[v]);
+            mesh.points[v] = geometry_.toPhysical(index);
+            mesh.normals[v] = toNormal(sampler_.normalAt(index));
+        }
+    });
+    reserveInHugePages(mesh.triangles, surface.triangles.size());
+    const bool isMirrored = geometry_.isMirrored();
+    for (const auto& t : surface.triangles) {
+        const auto id = [&](int c) { return static_cast<VertexId>(t[c]); };
+        mesh.triangles.push_back(isMirrored ? adaptiso::Triangle{id(0), id(2), id(1)}
+                                            : adaptiso::Triangle{id(0), id(1), id(2)});
+    }
+    mesh = withoutUnusedPoints(std::move(mesh));
+    completeNormals(mesh);
+    return mesh;
 }
 
 /// A triangle of the full surface lies in the cell that marching cubes made it in. Triangles of
@@ -171,7 +145,7 @@ bool VolumeSurface::roundsFinely() const {
 std::vector<std::int64_t> VolumeSurface::insideOut(const SimplifiedSurface& surface) const {
     if (bricks_.grid().border == Border::Open) return {};
     if (moving_) return {};  // a tile, which is open at its walls
-    return findInsideOutPieces({surface.points, surface.triangles}, {}).triangles;
+    return findInsideOutPieces(surface.view(), {}).triangles;
 }
 
 double VolumeSurface::largestExtentMm() const {

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <set>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "adaptiso/Core/ImageGeometry.h"
@@ -26,58 +24,24 @@ struct Link {
 /// How the triangles around a vertex hang together.
 enum class Fan : std::uint8_t { Closed, Open, Broken };
 
-struct VertexFan {
-    Number vertex;
-    Fan fan;
-    friend auto operator<=>(const VertexFan&, const VertexFan&) = default;
-};
-
-/// \param links  of one vertex, by where they start
+/// \param links  of one vertex
 Fan fanOf(std::span<const Link> links) {
-    std::vector<Number> ends;
-    for (const Link& link : links) ends.push_back(link.to);
-    std::sort(ends.begin(), ends.end());
-    const auto sameStart = [](const Link& a, const Link& b) { return a.from == b.from; };
-    if (std::adjacent_find(ends.begin(), ends.end()) != ends.end() ||
-        std::adjacent_find(links.begin(), links.end(), sameStart) != links.end()) {
-        return Fan::Broken;
-    }
+    const auto linkFrom = [&](Number v) {
+        return std::find_if(links.begin(), links.end(), [&](const Link& l) { return l.from == v; });
+    };
     const auto begin = std::find_if(links.begin(), links.end(), [&](const Link& link) {
-        return !std::binary_search(ends.begin(), ends.end(), link.from);
+        return std::none_of(links.begin(), links.end(),
+                            [&](const Link& l) { return l.to == link.from; });
     });
     const auto first = begin == links.end() ? links.begin() : begin;
     std::size_t seen = 0;
     auto at = first;
     do {
         ++seen;
-        const Number to = at->to;
-        at = std::lower_bound(links.begin(), links.end(), to,
-                              [](const Link& link, Number v) { return link.from < v; });
-        if (at == links.end() || at->from != to) at = links.end();
-    } while (at != links.end() && at != first);
-    if (seen != links.size()) return Fan::Broken;
+        at = linkFrom(at->to);
+    } while (at != links.end() && at != first && seen < links.size());
+    if (seen < links.size() || (at != first && at != links.end())) return Fan::Broken;
     return at == first ? Fan::Closed : Fan::Open;
-}
-
-/// By vertex.
-std::vector<VertexFan> fansOf(std::vector<Link> links) {
-    std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) {
-        return std::tie(a.vertex, a.from, a.to) < std::tie(b.vertex, b.from, b.to);
-    });
-    std::vector<VertexFan> fans;
-    for (std::size_t i = 0, j = 0; i < links.size(); i = j) {
-        while (j < links.size() && links[j].vertex == links[i].vertex) ++j;
-        fans.push_back({links[i].vertex, fanOf(std::span(links).subspan(i, j - i))});
-    }
-    return fans;
-}
-
-/// \param isMeant  says of a vertex whether its links are wanted
-template <class IsMeant>
-void addLinks(const SurfaceState::Triangle& t, const IsMeant& isMeant, std::vector<Link>& links) {
-    for (int c = 0; c < 3; ++c) {
-        if (isMeant(t[c])) links.push_back({t[c], t[(c + 1) % 3], t[(c + 2) % 3]});
-    }
 }
 
 Index3 cubeOf(const Vec3& p, double side) {
@@ -89,8 +53,8 @@ Index3 cubeOf(const Vec3& p, double side) {
 }  // namespace
 
 std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& mended,
-                                                const Numbers& seeds,
-                                                const std::vector<Vec3>& places, double reachMm) {
+                                                const std::vector<PlaceBeyond>& places,
+                                                double reachMm) {
     DisjointSets sets(std::ssize(surface_.points));
     const auto number = [](Number v) { return static_cast<std::int64_t>(v); };
     for (const Triangle& t : mended) {
@@ -98,7 +62,7 @@ std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& men
         sets.join(number(t[0]), number(t[2]));
     }
     std::vector<bool> isChosen(surface_.points.size());
-    Numbers more = verticesAround(seeds, places, reachMm);
+    Numbers more = verticesAround(places, reachMm);
     for (int widening = 0; widening < kMostWidenings; ++widening) {
         for (const Number v : more) isChosen[sets.find(number(v))] = true;
         choose(isChosen, sets);
@@ -110,15 +74,16 @@ std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& men
     return {};
 }
 
-LocalUndo::Numbers LocalUndo::verticesAround(const Numbers& seeds, const std::vector<Vec3>& places,
+LocalUndo::Numbers LocalUndo::verticesAround(const std::vector<PlaceBeyond>& places,
                                              double reachMm) const {
     Numbers vertices;
-    for (const Number t : seeds) {
-        vertices.insert(vertices.end(), surface_.triangles[t].begin(), surface_.triangles[t].end());
-    }
     std::set<Index3> cubes;
-    for (const Vec3& place : places) {
-        const Index3 cube = cubeOf(place, reachMm);
+    for (const PlaceBeyond& place : places) {
+        if (place.triangle != PlaceBeyond::kNone) {
+            const Triangle& t = surface_.triangles[place.triangle];
+            vertices.insert(vertices.end(), t.begin(), t.end());
+        }
+        const Index3 cube = cubeOf(place.point(), reachMm);
         for (int n = 0; n < 27; ++n) {
             cubes.insert({cube[0] + n % 3 - 1, cube[1] + n / 3 % 3 - 1, cube[2] + n / 9 - 1});
         }
@@ -171,37 +136,40 @@ void LocalUndo::makeTriangles() {
 /// The surface's vertices that have to come apart as well: the triangles around each vertex are to
 /// hang together as they do in the surface, or in the full one.
 LocalUndo::Numbers LocalUndo::faults() const {
-    const std::size_t old = surface_.points.size();
-    std::vector<bool> isBeside(old);
+    const std::size_t old = surface_.points.size(), all = old + apart_.size();
+    std::vector<bool> isBeside(old), isFaulty(all);
+    std::fill(isFaulty.begin() + static_cast<std::ptrdiff_t>(old), isFaulty.end(), true);
+    // where the links around each vertex lead less where they start: 0 where they close
+    std::vector<Number> open(all);
+    std::vector<Link> links;
     for (const Triangle& t : fresh_) {
-        for (const Number v : t) {
-            if (!isOfFine(v)) isBeside[v] = true;
+        for (int c = 0; c < 3; ++c) {
+            links.push_back({t[c], t[(c + 1) % 3], t[(c + 2) % 3]});
+            if (!isOfFine(t[c])) isBeside[t[c]] = true;
         }
     }
-    std::vector<Link> before, after;
-    const auto isBesideOne = [&](Number v) { return !isOfFine(v) && isBeside[v]; };
     for (const Triangle& t : surface_.triangles) {
-        addLinks(t, isBesideOne, before);
-        if (!isTouched(t)) addLinks(t, isBesideOne, after);
-    }
-    for (const Triangle& t : fresh_) {
-        addLinks(
-            t, [](Number) { return true; }, after);
+        for (int c = 0; c < 3; ++c) {
+            if (!isBeside[t[c]]) continue;
+            open[t[c]] += t[(c + 2) % 3] - t[(c + 1) % 3];
+            if (!isTouched(t)) links.push_back({t[c], t[(c + 1) % 3], t[(c + 2) % 3]});
+        }
     }
     for (const Triangle& t : fine_.triangles) {
         for (int c = 0; c < 3; ++c) {
             const Number v = numbers_[t[c]];
-            if (isOfFine(v)) before.push_back({v, t[(c + 1) % 3], t[(c + 2) % 3]});
+            if (isOfFine(v)) open[v] += t[(c + 2) % 3] - t[(c + 1) % 3];
         }
     }
-    const std::vector<VertexFan> wanted = fansOf(std::move(before)),
-                                 made = fansOf(std::move(after));
-    std::vector<VertexFan> different;
-    std::set_difference(wanted.begin(), wanted.end(), made.begin(), made.end(),
-                        std::back_inserter(different));
+    std::sort(links.begin(), links.end(),
+              [](const Link& a, const Link& b) { return a.vertex < b.vertex; });
+    for (std::size_t i = 0, j = 0; i < links.size(); i = j) {
+        const Number v = links[i].vertex;
+        while (j < links.size() && links[j].vertex == v) ++j;
+        isFaulty[v] =
+            fanOf(std::span(links).subspan(i, j - i)) != (open[v] == 0 ? Fan::Closed : Fan::Open);
+    }
     Numbers vertices = flatCorners();
-    std::vector<bool> isFaulty(old + apart_.size());
-    for (const VertexFan& fan : different) isFaulty[fan.vertex] = true;
     for (const Triangle& t : fine_.triangles) {
         const bool isAt =
             isFaulty[numbers_[t[0]]] || isFaulty[numbers_[t[1]]] || isFaulty[numbers_[t[2]]];
@@ -234,8 +202,7 @@ SurfaceChanges LocalUndo::apply() {
     for (Number t = 0; t < surface_.triangles.size(); ++t) {
         if (!isTouched(surface_.triangles[t])) continue;
         removed.push_back(t);
-        const auto [a, b, c] = surface_.triangles[t];
-        changes.before.push_back({surface_.points[a], surface_.points[b], surface_.points[c]});
+        changes.before.push_back(surface_.view().cornersOf(t));
     }
     addVertices();
     for (std::size_t i = 0; i < fresh_.size(); ++i) {

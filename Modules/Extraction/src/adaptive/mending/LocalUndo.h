@@ -8,6 +8,7 @@
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/MeshQuality/TriangleTree.h"
 #include "adaptive/mesh/SimplifiedSurface.h"
+#include "adaptive/proof/DistanceProof.h"
 
 namespace adaptiso::detail {
 
@@ -27,22 +28,19 @@ public:
 
     /// \param mended   triangles that were changed besides, before and after: their corners come
     ///                 apart together
-    /// \param seeds    triangles of the surface
-    /// \param places   in the metric frame
-    /// \param reachMm  how far around the places vertices come apart; at least the seeds' corners
+    /// \param reachMm  how far around the places vertices come apart; at least the corners of their
+    ///                 triangles
     /// \return what it changed; nothing when no vertex would come apart, or the surface would not
     ///         stay a manifold
     std::optional<SurfaceChanges> around(const std::vector<SurfaceState::Triangle>& mended,
-                                         const std::vector<SurfaceState::Number>& seeds,
-                                         const std::vector<Vec3>& places, double reachMm);
+                                         const std::vector<PlaceBeyond>& places, double reachMm);
 
 private:
     using Triangle = SurfaceState::Triangle;
     using Number = SurfaceState::Number;
     using Numbers = std::vector<Number>;
 
-    Numbers verticesAround(const Numbers& seeds, const std::vector<Vec3>& places,
-                           double reachMm) const;
+    Numbers verticesAround(const std::vector<PlaceBeyond>& places, double reachMm) const;
     void choose(const std::vector<bool>& isChosen, DisjointSets& sets);
     bool hasMerges() const;
     void makeTriangles();

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
 #include <set>
 #include <utility>
 
@@ -31,13 +29,6 @@ double squaredDistanceToNearest(const Vec3& p, const std::vector<Corners>& trian
     double least = squaredDistanceToTriangle(p, triangles[0]);
     for (const Corners& t : triangles) least = std::min(least, squaredDistanceToTriangle(p, t));
     return least;
-}
-
-/// Makes room for one more: few are added to what the rounds left, for which a list would take
-/// twice its memory.
-template <class T>
-void growALittle(std::vector<T>& list) {
-    if (list.size() == list.capacity()) list.reserve(list.size() + list.size() / 16 + 16);
 }
 
 /// The numbers below `count` of which isMeant(number) is true, ascending.
@@ -74,11 +65,7 @@ std::size_t SurfaceMender::mendDistances(std::vector<PlaceBeyond> places) {
     std::stable_sort(places.begin(), places.end(), [](const PlaceBeyond& a, const PlaceBeyond& b) {
         return a.squaredDistance() > b.squaredDistance();
     });
-    prepare(places);
-    const auto mended = static_cast<std::size_t>(std::count_if(
-        places.begin(), places.end(), [&](const PlaceBeyond& place) { return mendPlace(place); }));
-    removeTriangles(std::exchange(gone_, {}), surface_, changes_);
-    return mended;
+    return mendAll(places, [&](const PlaceBeyond& place) { return mendPlace(place); });
 }
 
 std::size_t SurfaceMender::mendCrossings(const std::vector<std::int64_t>& triangles,
@@ -88,13 +75,23 @@ std::size_t SurfaceMender::mendCrossings(const std::vector<std::int64_t>& triang
         PlaceBeyond& place = places.emplace_back();
         place.triangle = static_cast<Number>(t);
     }
+    return mendAll(places, [&](const PlaceBeyond& place) {
+        return mendCrossing(place.triangle, mergesFirst);
+    });
+}
+
+/// \param mend  mends one place, if it can \return how many it did
+template <class Mend>
+std::size_t SurfaceMender::mendAll(const std::vector<PlaceBeyond>& places, const Mend& mend) {
     prepare(places);
-    const auto mended = static_cast<std::size_t>(
-        std::count_if(places.begin(), places.end(), [&](const PlaceBeyond& place) {
-            return !contains(gone_, place.triangle) && mendCrossing(place.triangle, mergesFirst);
-        }));
+    // one vertex for a place at most: lists that grow by themselves take twice their memory
+    surface_.points.reserve(surface_.points.size() + places.size());
+    surface_.triangles.reserve(surface_.triangles.size() + 2 * places.size());
+    const auto mended = std::count_if(places.begin(), places.end(), [&](const PlaceBeyond& place) {
+        return !contains(gone_, place.triangle) && mend(place);
+    });
     removeTriangles(std::exchange(gone_, {}), surface_, changes_);
-    return mended;
+    return static_cast<std::size_t>(mended);
 }
 
 /// Brings the triangle to one of its samples, or merges two of its corners.
@@ -188,7 +185,8 @@ bool SurfaceMender::insert(const PlaceBeyond& place, Number triangle,
         }
         const auto besideLeast = static_cast<int>(least + 1) % 3;
         if (at[least] < kAtEdge && splitEdge(triangle, besideLeast, target)) return true;
-        if (splitTriangle(triangle, target)) return true;
+        const auto [a, b, c] = surface_.triangles[triangle];
+        if (split({triangle}, {{a, b, kNone}, {b, c, kNone}, {c, a, kNone}}, target)) return true;
     }
     return false;
 }
@@ -196,7 +194,6 @@ bool SurfaceMender::insert(const PlaceBeyond& place, Number triangle,
 /// The part of the place's triangle that it lies in; kNone when the surface has left the place.
 Number SurfaceMender::partAt(const PlaceBeyond& place) const {
     Number best = place.triangle;
-    if (contains(gone_, best)) return kNone;
     double least = squaredDistanceToTriangle(place.onSimplified, cornersOf(best));
     const auto parts = parts_.find(place.triangle);
     if (parts != parts_.end()) {
@@ -212,69 +209,52 @@ Number SurfaceMender::partAt(const PlaceBeyond& place) const {
 }
 
 bool SurfaceMender::moveVertex(Number vertex, const Vec3& step) {
-    if (!isTracked(vertex) || surface_.states[vertex] == Patch::State::Final ||
-        isOnBorder(vertex) || !isInBox(surface_.points[vertex] + step)) {
-        return false;
-    }
-    const Numbers& around = around_.at(vertex);
-    std::vector<Corners> moved;
-    for (const Number t : around) {
-        const Corners before = cornersOf(t);
-        Corners& now = moved.emplace_back(before);
-        for (int c = 0; c < 3; ++c) {
-            if (surface_.triangles[t][c] == vertex) now[c] = before[c] + step;
-        }
-        if (!facesAs(now, before)) return false;
-    }
+    if (!mayMove(vertex)) return false;
+    const Numbers around = around_.at(vertex);
     const Vec3 target = surface_.points[vertex] + step;
-    if (!isFree(target, around) || !isSound(moved, around)) return false;
+    const auto moved = movedCorners(around, vertex, vertex, target);
+    if (!moved || !mayReplace(around, *moved, target)) return false;
     for (const Number t : around) note(t);
     surface_.points[vertex] = target;
-    for (const Number t : Numbers(around)) replace(t, surface_.triangles[t]);
+    for (const Number t : around) replace(t, surface_.triangles[t]);
     return true;
 }
 
 /// Splits the edge from a corner of the triangle to the next one, and the triangles at it.
 bool SurfaceMender::splitEdge(Number triangle, int corner, const Vec3& point) {
     const std::optional<Edge> edge = edgeAt(triangle, corner);
-    if (!edge || !isInBox(point)) return false;
+    if (!edge) return false;
     const auto [a, b, c, d, twin] = *edge;
-    const auto& at = surface_.points;
-    const Corners first = cornersOf(triangle), second = cornersOf(twin);
-    const std::vector<Corners> parts{
-        {at[a], point, at[c]}, {point, at[b], at[c]}, {at[b], point, at[d]}, {point, at[a], at[d]}};
-    if (!facesAs(parts[0], first) || !facesAs(parts[1], first) || !facesAs(parts[2], second) ||
-        !facesAs(parts[3], second) || !isFree(point, {triangle, twin}) ||
-        !isSound(parts, {triangle, twin})) {
-        return false;
-    }
-    note(triangle);
-    note(twin);
-    const Number v = addVertex(point);
-    replace(triangle, {a, v, c});
-    replace(twin, {b, v, d});
-    const Number besideFirst = addTriangle({v, b, c}, triangle),
-                 besideSecond = addTriangle({v, a, d}, twin);
-    handOver({triangle, twin}, {triangle, twin, besideFirst, besideSecond});
-    return true;
+    return split({triangle, twin}, {{a, kNone, c}, {b, kNone, d}, {kNone, b, c}, {kNone, a, d}},
+                 point);
 }
 
-bool SurfaceMender::splitTriangle(Number triangle, const Vec3& point) {
-    const auto [a, b, c] = surface_.triangles[triangle];
-    const auto& at = surface_.points;
-    const Corners before = cornersOf(triangle);
-    const std::vector<Corners> parts{
-        {at[a], at[b], point}, {at[b], at[c], point}, {at[c], at[a], point}};
-    if (!isInBox(point) || !facesAs(parts[0], before) || !facesAs(parts[1], before) ||
-        !facesAs(parts[2], before) || !isFree(point, {triangle}) || !isSound(parts, {triangle})) {
-        return false;
+/// Puts a new vertex into triangles.
+/// \param parts  of each triangle in turn; kNone in place of the new vertex
+bool SurfaceMender::split(const Numbers& triangles, const std::vector<Triangle>& parts,
+                          const Vec3& point) {
+    const auto parentOf = [&](std::size_t part) { return triangles[part % triangles.size()]; };
+    std::vector<Corners> corners(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        for (int c = 0; c < 3; ++c) {
+            corners[i][c] = parts[i][c] == kNone ? point : surface_.points[parts[i][c]];
+        }
+        if (!facesAs(corners[i], cornersOf(parentOf(i)))) return false;
     }
-    note(triangle);
+    if (!mayReplace(triangles, corners, point)) return false;
+    for (const Number t : triangles) note(t);
     const Number v = addVertex(point);
-    replace(triangle, {a, b, v});
-    const Number second = addTriangle({b, c, v}, triangle),
-                 third = addTriangle({c, a, v}, triangle);
-    handOver({triangle}, {triangle, second, third});
+    Numbers numbers = triangles;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Triangle part = parts[i];
+        std::replace(part.begin(), part.end(), kNone, v);
+        if (i < triangles.size()) {
+            replace(triangles[i], part);
+        } else {
+            numbers.push_back(addTriangle(part, parentOf(i)));
+        }
+    }
+    handOver(triangles, numbers);
     return true;
 }
 
@@ -288,42 +268,27 @@ bool SurfaceMender::collapseEdge(Number triangle, int corner, const PlaceBeyond&
     for (const Number t : around_.at(b)) {
         if (!contains(replaced, t)) replaced.push_back(t);
     }
+    Numbers kept = replaced;
+    std::erase(kept, triangle);
+    std::erase(kept, twin);
     const Vec3 first = surface_.points[a], second = surface_.points[b];
     const double squared = place.squaredDistance();
     for (const Vec3& target : {place.onFine, 0.5 * (first + second), first, second}) {
-        std::vector<Corners> parts;
-        bool isAllowed = isInBox(target);
-        for (const Number t : replaced) {
-            if (t == triangle || t == twin) continue;
-            const Corners before = cornersOf(t);
-            Corners& now = parts.emplace_back(before);
-            for (int i = 0; i < 3; ++i) {
-                const Number v = surface_.triangles[t][i];
-                if (v == a || v == b) now[i] = target;
-            }
-            isAllowed = isAllowed && facesAs(now, before);
-        }
-        if (!isAllowed ||
-            (squared > 0 && squaredDistanceToNearest(place.onFine, parts) >= squared) ||
-            !isFree(target, replaced) || !isSound(parts, replaced)) {
+        const auto parts = movedCorners(kept, a, b, target);
+        if (!parts || (squared > 0 && squaredDistanceToNearest(place.onFine, *parts) >= squared) ||
+            !mayReplace(replaced, *parts, target)) {
             continue;
         }
         for (const Number t : replaced) note(t);
         surface_.points[a] = target;
-        Numbers kept;
-        for (const Number t : replaced) {
-            if (t == triangle || t == twin) {
-                for (const Number v : surface_.triangles[t]) {
-                    const auto around = around_.find(v);
-                    if (around != around_.end()) std::erase(around->second, t);
-                }
-                gone_.push_back(t);
-                continue;
-            }
+        for (const Number t : {triangle, twin}) {
+            leave(t);
+            gone_.push_back(t);
+        }
+        for (const Number t : kept) {
             Triangle corners = surface_.triangles[t];
             std::replace(corners.begin(), corners.end(), b, a);
             replace(t, corners);
-            kept.push_back(t);
         }
         handOver(replaced, kept);
         return true;
@@ -331,27 +296,40 @@ bool SurfaceMender::collapseEdge(Number triangle, int corner, const PlaceBeyond&
     return false;
 }
 
+/// The corners of triangles after two vertices went to a place; none where one turns too far.
+std::optional<std::vector<Corners>> SurfaceMender::movedCorners(const Numbers& triangles, Number a,
+                                                                Number b,
+                                                                const Vec3& target) const {
+    std::vector<Corners> moved;
+    for (const Number t : triangles) {
+        Corners& now = moved.emplace_back(cornersOf(t));
+        for (int i = 0; i < 3; ++i) {
+            const Number v = surface_.triangles[t][i];
+            if (v == a || v == b) now[i] = target;
+        }
+        if (!facesAs(now, cornersOf(t))) return {};
+    }
+    return moved;
+}
+
 /// Merging the edge's ends leaves a manifold (link condition), and both may move.
 bool SurfaceMender::mayMerge(const Edge& edge) const {
-    std::set<Number> besideFirst, besideSecond;
-    for (const auto& [vertex, beside] :
-         {std::pair(edge.a, &besideFirst), std::pair(edge.b, &besideSecond)}) {
-        if (!isTracked(vertex) || surface_.states[vertex] == Patch::State::Final ||
-            isOnBorder(vertex)) {
-            return false;
-        }
+    if (!mayMove(edge.a) || !mayMove(edge.b)) return false;
+    const auto withNeighbours = [&](Number vertex) {
+        std::set<Number> vertices;
         for (const Number t : around_.at(vertex)) {
-            beside->insert(surface_.triangles[t].begin(), surface_.triangles[t].end());
+            vertices.insert(surface_.triangles[t].begin(), surface_.triangles[t].end());
         }
-    }
-    Numbers common;
-    std::set_intersection(besideFirst.begin(), besideFirst.end(), besideSecond.begin(),
-                          besideSecond.end(), std::back_inserter(common));
+        return vertices;
+    };
+    const std::set<Number> atA = withNeighbours(edge.a), atB = withNeighbours(edge.b);
+    const auto common =
+        std::count_if(atA.begin(), atA.end(), [&](Number v) { return atB.contains(v); });
     // both ends, and the two corners across the edge
-    constexpr std::size_t kShared = 4;
+    constexpr std::ptrdiff_t kShared = 4;
     // each end with its neighbours: four vertices in all would be a tetrahedron, which goes flat
     constexpr std::size_t kLeast = 10;
-    return common.size() == kShared && besideFirst.size() + besideSecond.size() >= kLeast;
+    return common == kShared && atA.size() + atB.size() >= kLeast;
 }
 
 /// The triangle is not flat, and faces about where another one does.
@@ -364,9 +342,11 @@ bool SurfaceMender::facesAs(const Corners& now, const Corners& before) const {
            dot(area2, old) > kMendCosine * norm(area2) * norm(old);
 }
 
-/// \param replaced  triangles that go
-bool SurfaceMender::isSound(const std::vector<Corners>& triangles, const Numbers& replaced) const {
-    return staysNear(triangles, replaced) && crossesNothing(triangles, replaced);
+/// Triangles may come in place of others: the vertex of theirs that is new or moved is in the box.
+bool SurfaceMender::mayReplace(const Numbers& replaced, const std::vector<Corners>& triangles,
+                               const Vec3& vertex) const {
+    return (!box_ || box_->contains(vertex)) && isFree(vertex, replaced) &&
+           staysNear(triangles, replaced) && crossesNothing(triangles, replaced);
 }
 
 /// No other triangle has a corner there: two vertices at one place do not cross as trianglesCross
@@ -447,20 +427,20 @@ std::optional<SurfaceMender::Edge> SurfaceMender::edgeAt(Number triangle, int co
     return Edge{a, b, t[(corner + 2) % 3], *d, twin};
 }
 
-/// Some edge at the vertex has one triangle only.
-bool SurfaceMender::isOnBorder(Number vertex) const {
-    const Numbers& around = around_.at(vertex);
-    return std::any_of(around.begin(), around.end(), [&](Number t) {
+/// Not at an open border.
+bool SurfaceMender::mayMove(Number vertex) const {
+    if (!isTracked(vertex) || surface_.states[vertex] == Patch::State::Final) return false;
+    Number open = 0;  // where the edges around it lead, less where they start: 0 where they close
+    for (const Number t : around_.at(vertex)) {
         const Triangle& c = surface_.triangles[t];
         const auto i = std::find(c.begin(), c.end(), vertex) - c.begin();
-        return triangleOf(c[(i + 1) % 3], vertex) == kNone;
-    });
+        open += c[(i + 2) % 3] - c[(i + 1) % 3];
+    }
+    return open == 0;
 }
 
 Number SurfaceMender::addVertex(const Vec3& point) {
     const auto v = static_cast<Number>(surface_.points.size());
-    growALittle(surface_.points);
-    growALittle(surface_.states);
     surface_.points.push_back(point);
     surface_.states.push_back(Patch::State::Open);
     if (!surface_.marks.empty()) surface_.marks.push_back(Patch::kPlain);
@@ -471,7 +451,6 @@ Number SurfaceMender::addVertex(const Vec3& point) {
 /// \param parent  the triangle that it was a part of
 Number SurfaceMender::addTriangle(const Triangle& triangle, Number parent) {
     const auto number = static_cast<Number>(surface_.triangles.size());
-    growALittle(surface_.triangles);
     surface_.triangles.push_back(triangle);
     changes_.triangles.push_back(number);
     track(number);
@@ -482,11 +461,16 @@ Number SurfaceMender::addTriangle(const Triangle& triangle, Number parent) {
     return number;
 }
 
-void SurfaceMender::replace(Number number, const Triangle& triangle) {
-    for (const Number v : surface_.triangles[number]) {
+/// Its vertices list the triangle no longer.
+void SurfaceMender::leave(Number triangle) {
+    for (const Number v : surface_.triangles[triangle]) {
         const auto around = around_.find(v);
-        if (around != around_.end()) std::erase(around->second, number);
+        if (around != around_.end()) std::erase(around->second, triangle);
     }
+}
+
+void SurfaceMender::replace(Number number, const Triangle& triangle) {
+    leave(number);
     surface_.triangles[number] = triangle;
     track(number);
 }

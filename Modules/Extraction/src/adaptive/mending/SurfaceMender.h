@@ -56,6 +56,8 @@ private:
         Number a, b, c, d, twin;
     };
 
+    template <class Mend>
+    std::size_t mendAll(const std::vector<PlaceBeyond>& places, const Mend& mend);
     void prepare(const std::vector<PlaceBeyond>& places);
     bool mendPlace(const PlaceBeyond& place);
     bool mendCrossing(Number triangle, bool mergesFirst);
@@ -64,28 +66,28 @@ private:
     Number partAt(const PlaceBeyond& place) const;
     bool moveVertex(Number vertex, const Vec3& step);
     bool splitEdge(Number triangle, int corner, const Vec3& point);
-    bool splitTriangle(Number triangle, const Vec3& point);
+    bool split(const Numbers& triangles, const std::vector<Triangle>& parts, const Vec3& point);
 
     bool collapseEdge(Number triangle, int corner, const PlaceBeyond& place);
     bool mayMerge(const Edge& edge) const;
 
-    bool isInBox(const Vec3& p) const { return !box_ || box_->contains(p); }
+    bool mayMove(Number vertex) const;
+    std::optional<std::vector<Corners>> movedCorners(const Numbers& triangles, Number a, Number b,
+                                                     const Vec3& target) const;
     bool facesAs(const Corners& now, const Corners& before) const;
-    bool isSound(const std::vector<Corners>& triangles, const Numbers& replaced) const;
+    bool mayReplace(const Numbers& replaced, const std::vector<Corners>& triangles,
+                    const Vec3& vertex) const;
     bool isFree(const Vec3& point, const Numbers& replaced) const;
     bool staysNear(const std::vector<Corners>& triangles, const Numbers& replaced) const;
     bool crossesNothing(const std::vector<Corners>& triangles, const Numbers& replaced) const;
 
-    Corners cornersOf(Number triangle) const {
-        const Triangle& t = surface_.triangles[triangle];
-        return {surface_.points[t[0]], surface_.points[t[1]], surface_.points[t[2]]};
-    }
+    Corners cornersOf(Number triangle) const { return surface_.view().cornersOf(triangle); }
     bool isTracked(Number vertex) const { return around_.contains(vertex); }
     Number triangleOf(Number from, Number to) const;
     std::optional<Edge> edgeAt(Number triangle, int corner) const;
-    bool isOnBorder(Number vertex) const;
     Number addVertex(const Vec3& point);
     Number addTriangle(const Triangle& triangle, Number parent);
+    void leave(Number triangle);
     void replace(Number number, const Triangle& triangle);
     void track(Number triangle);
     void trackBox(Number triangle);

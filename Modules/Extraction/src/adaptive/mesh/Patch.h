@@ -9,6 +9,7 @@
 #include "adaptiso/Core/Geometry.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 #include "adaptiso/SurfaceProof/Quadric.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/bricks/SheetClearance.h"
@@ -94,6 +95,8 @@ struct Patch {
 
     std::vector<Sample> samples;
     std::vector<std::uint32_t> sampleTriangle;  ///< the triangle that each is assigned to
+
+    TriangleView view() const { return {points, triangles}; }
 
     static constexpr std::uint32_t kPlain = 0, kBorder = 1;
     bool isBorder(std::uint32_t point) const { return !marks.empty() && marks[point] == kBorder; }

@@ -6,6 +6,7 @@
 
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 #include "adaptive/mesh/Patch.h"
 
 namespace adaptiso::detail {
@@ -23,12 +24,16 @@ struct SurfaceState {
     /// Per point: Patch::kPlain; Patch::kBorder on an open border that may be simplified;
     /// above, a number of the point's own, by which it is known in the end. Empty: all are plain.
     std::vector<std::uint32_t> marks;
+    /// Per point, relative to it. Empty once nothing is collapsed or fitted any more, and where
+    /// nothing ever can be.
+    std::vector<StoredQuadric> quadrics;
     std::vector<Triangle> triangles;
     std::vector<Number> sampleTriangle;  ///< that each sample is assigned to
     /// Per vertex of the full-resolution surface: the point that it was merged into, or still is.
     /// Empty: not asked for.
     std::vector<Number> heirs;
 
+    TriangleView view() const { return {points, triangles}; }
     std::int64_t triangleCount() const { return static_cast<std::int64_t>(triangles.size()); }
 };
 
@@ -43,9 +48,6 @@ struct SimplifiedSurface : SurfaceState {
     static constexpr Number kGone = ~Number{0};
     static constexpr std::size_t kMostSamples = ~Number{0};
 
-    /// Per point, relative to it. Empty once nothing is collapsed or fitted any more, and where
-    /// nothing ever can be.
-    std::vector<StoredQuadric> quadrics;
     /// The full-resolution surface's vertices in their order, and between them middles of its
     /// triangles.
     std::vector<Sample> samples;
@@ -62,6 +64,18 @@ struct SimplifiedSurface : SurfaceState {
         if (samples.size() >= kLarge) adaptiso::returnFreedMemory();
     }
 };
+
+/// Twice the sum of the area vectors around each point.
+std::vector<Vec3> areasAround(const TriangleView& surface);
+
+/// Per point, of the planes of the triangles around it.
+std::vector<Quadric> quadricsOf(const TriangleView& surface);
+/// Gives each point that of the triangles around it.
+void setQuadrics(SimplifiedSurface& surface);
+
+/// Drops triangles that are gone (kGone), and points without one; others keep their order.
+/// \param mergedInto  of each point that is gone now, where the surface keeps heirs
+void removeGone(SimplifiedSurface& surface, const std::vector<SurfaceState::Number>& mergedInto);
 
 /// Changes of a surface.
 struct SurfaceChanges {

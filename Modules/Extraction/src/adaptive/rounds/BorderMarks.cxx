@@ -11,11 +11,6 @@ Quadric borderQuadric(const Vec3& a, const Vec3& b, const Vec3& area2) {
     return Quadric::ofTriangle(2 * norm(edge) * cross(edge, normalized(area2)), a);
 }
 
-void addTo(StoredQuadric& quadric, const Quadric& more, const Vec3& point) {
-    const StoredQuadric stored = StoredQuadric::of(more, point);
-    for (std::size_t n = 0; n < stored.number.size(); ++n) quadric.number[n] += stored.number[n];
-}
-
 void markSamples(SimplifiedSurface& surface) {
     for (std::size_t s = 0; s < surface.samples.size(); ++s) {
         Sample& sample = surface.samples[s];
@@ -51,13 +46,15 @@ void markBorders(std::span<const std::uint64_t> halfEdges, SimplifiedSurface& su
     surface.marks.resize(surface.points.size(), Patch::kPlain);
     for (const std::uint64_t h : halfEdges) {
         const SurfaceState::Triangle& t = surface.triangles[h / 3];
-        const Vec3 area2 =
-            areaVector2(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]);
+        const Corners c = surface.view().cornersOf(h / 3);
+        const Vec3 area2 = areaVector2(c[0], c[1], c[2]);
         const std::uint64_t a = t[h % 3], b = t[(h + 1) % 3];
         const Quadric q = borderQuadric(surface.points[a], surface.points[b], area2);
         for (const std::uint64_t v : {a, b}) {
             if (surface.marks[v] == Patch::kPlain) surface.marks[v] = Patch::kBorder;
-            if (!surface.quadrics.empty()) addTo(surface.quadrics[v], q, surface.points[v]);
+            if (!surface.quadrics.empty()) {
+                surface.quadrics[v] += StoredQuadric::of(q, surface.points[v]);
+            }
         }
     }
     markSamples(surface);

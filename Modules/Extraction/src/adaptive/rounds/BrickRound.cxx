@@ -15,87 +15,49 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr std::uint32_t kNone = 0xFFFFFFFF;
+/// A vertex on walls.
+struct WallVertex {
+    std::uint64_t edge;
+    SurfaceState::Number vertex, triangle;  ///< and one of its triangles
+    Vec3 normal;                            ///< of several bricks: the sum of theirs
+    std::uint8_t clearance;
+};
 
-/// Gives the vertices of a full-resolution surface their quadrics.
-void addQuadrics(Patch& patch) {
-    patch.quadrics.assign(patch.points.size(), {});
-    for (const auto& t : patch.triangles) {
-        const Vec3& a = patch.points[t[0]];
-        const Quadric q =
-            Quadric::ofTriangle(areaVector2(a, patch.points[t[1]], patch.points[t[2]]), a);
-        for (const std::uint32_t v : t) patch.quadrics[v] += q;
-    }
-}
-
-/// A brick after its own round.
-struct BrickSurface {
-    std::vector<Vec3> points;
-    std::vector<StoredQuadric> quadrics;
-    std::vector<Patch::State> states;
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Sample> samples;  ///< those on walls are not among them
-    std::vector<std::uint32_t> sampleTriangle;
-    /// The full-resolution surface: its vertices but those on walls, which the triangles have as
-    /// kOnWall + their number in `walls`.
-    FineMesh fine;
-    std::vector<std::uint32_t> heirs;  ///< of those vertices, see SurfaceState
-    static constexpr std::uint32_t kOnWall = std::uint32_t{1} << 31;
-    struct WallVertex {
-        std::uint64_t edge;
-        std::uint32_t vertex, triangle;  ///< and one of its triangles
-        Vec3 normal;
-        std::uint8_t clearance;
-    };
+/// A brick after its own round. Vertices on walls are no samples, and not among the full-resolution
+/// surface's, whose triangles have them as kOnWall + their number in `walls`.
+struct BrickSurface : SimplifiedSurface {
+    static constexpr Number kOnWall = Number{1} << 31;
     std::vector<WallVertex> walls;
-    std::int64_t tableTriangles = 0;
     bool isWhole = false;  ///< noise: it is left so, and has no quadrics
 };
 
-/// Takes over what is not gone of the patch.
-/// \return the new number of each point, or kNone
-std::vector<std::uint32_t> takeOver(Patch& patch, BrickSurface& brick) {
-    std::vector<std::uint32_t> newTriangle(patch.triangles.size(), kNone),
-        newVertex(patch.points.size(), kNone);
-    std::uint32_t triangles = 0, vertices = 0;
-    for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
-        if (patch.triangles[t][0] == Patch::kGone) continue;
-        newTriangle[t] = triangles++;
-        for (const std::uint32_t v : patch.triangles[t]) newVertex[v] = 0;
-    }
-    for (std::uint32_t& v : newVertex) {
-        if (v != kNone) v = vertices++;
-    }
-    brick.triangles.reserve(triangles);
-    for (const auto& t : patch.triangles) {
-        if (t[0] == Patch::kGone) continue;
-        brick.triangles.push_back({newVertex[t[0]], newVertex[t[1]], newVertex[t[2]]});
-    }
-    brick.points.reserve(vertices);
-    if (!brick.isWhole) brick.quadrics.reserve(vertices);
-    brick.states.reserve(vertices);
-    for (std::size_t v = 0; v < patch.points.size(); ++v) {
-        if (newVertex[v] == kNone) continue;
-        brick.points.push_back(patch.points[v]);
-        if (!brick.isWhole) {
+/// Takes over what is not gone of the patch; heirs of all vertices.
+void takeOver(Patch& patch, BrickSurface& brick) {
+    if (!brick.isWhole) {
+        brick.quadrics.reserve(patch.points.size());
+        for (std::size_t v = 0; v < patch.points.size(); ++v) {
             brick.quadrics.push_back(StoredQuadric::of(patch.quadrics[v], patch.points[v]));
         }
-        brick.states.push_back(patch.states[v]);
     }
+    brick.heirs.resize(patch.points.size());
+    std::iota(brick.heirs.begin(), brick.heirs.end(), 0U);
+    brick.points = std::move(patch.points);
+    brick.states = std::move(patch.states);
+    brick.triangles = std::move(patch.triangles);
     brick.samples = std::move(patch.samples);
     brick.sampleTriangle = std::move(patch.sampleTriangle);
     brick.samples.shrink_to_fit();
     brick.sampleTriangle.shrink_to_fit();
-    for (std::uint32_t& t : brick.sampleTriangle) t = newTriangle[t];
-    std::vector<std::uint32_t> triangleAt(vertices);
-    for (std::uint32_t t = 0; t < triangles; ++t) {
+    // this thread must not begin another brick meanwhile
+    isolated([&] { removeGone(brick, patch.heirs); });
+    std::vector<std::uint32_t> triangleAt(brick.points.size());
+    for (std::uint32_t t = 0; t < brick.triangles.size(); ++t) {
         for (const std::uint32_t v : brick.triangles[t]) triangleAt[v] = t;
     }
-    for (auto& wall : brick.walls) {
-        wall.vertex = newVertex[wall.vertex];
+    for (WallVertex& wall : brick.walls) {
+        wall.vertex = brick.heirs[wall.vertex];
         wall.triangle = triangleAt[wall.vertex];
     }
-    return newVertex;
 }
 
 /// The surface comes round a sample whose value is the isovalue. There are many in whole-numbered
@@ -120,11 +82,7 @@ void FineBrick::setPoints(const MetricFrame& frame) {
     points.clear();
     points.reserve(surface.vertices.size());
     for (const FineVertex& v : surface.vertices) points.push_back(frame.fromIndex(v.index));
-    areas.assign(points.size(), {});
-    for (const auto& t : surface.triangles) {
-        const Vec3 area2 = areaVector2(points[t[0]], points[t[1]], points[t[2]]);
-        for (const std::uint32_t v : t) areas[v] += area2;
-    }
+    areas = areasAround({points, surface.triangles});
 }
 
 /// Half of the cells are crossed, nearly all of the surface has other parts of it near, and most of
@@ -180,7 +138,7 @@ void addMiddles(const FineBrick& made, const Nearness& near, Patch& patch) {
         const auto& v = patch.triangles[t];
         if (!made.bends(v)) continue;
         Sample& middle = patch.samples.emplace_back(Sample::middleOf(
-            {patch.points[v[0]], patch.points[v[1]], patch.points[v[2]]},
+            patch.view().cornersOf(t),
             std::min({near.clearance[v[0]], near.clearance[v[1]], near.clearance[v[2]]})));
         middle.isInWeb =
             near.isInWeb[v[0]] != 0 || near.isInWeb[v[1]] != 0 || near.isInWeb[v[2]] != 0;
@@ -218,9 +176,7 @@ Patch patchOf(const FineBrick& made, const Nearness& near, BrickSurface& brick) 
 }
 
 /// Keeps the full-resolution surface, for the proof and to be brought back.
-/// \param newVertex  of each vertex, or kNone \param heirs  what each was merged into
-void keepFine(const FineBrick& made, const std::vector<std::uint32_t>& newVertex,
-              const std::vector<std::uint32_t>& heirs, BrickSurface& brick) {
+void keepFine(const FineBrick& made, BrickSurface& brick) {
     std::vector<std::uint32_t> number(made.points.size());
     std::uint32_t onWall = BrickSurface::kOnWall;
     for (std::uint32_t v = 0; v < number.size(); ++v) {
@@ -230,10 +186,9 @@ void keepFine(const FineBrick& made, const std::vector<std::uint32_t>& newVertex
         }
         number[v] = static_cast<std::uint32_t>(brick.fine.points.size());
         brick.fine.points.push_back(made.points[v]);
-        std::uint32_t heir = v;
-        while (newVertex[heir] == kNone && heirs[heir] != heir) heir = heirs[heir];
-        brick.heirs.push_back(newVertex[heir]);
+        brick.heirs[number[v]] = brick.heirs[v];
     }
+    brick.heirs.resize(brick.fine.points.size());
     brick.fine.triangles.reserve(made.surface.triangles.size());
     for (const auto& [a, b, c] : made.surface.triangles) {
         brick.fine.triangles.push_back({number[a], number[b], number[c]});
@@ -250,7 +205,7 @@ BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const 
     const Nearness near = nearnessOf(made, frame, limits.webMm);
     Patch patch = patchOf(made, near, result);
     if (!made.isNoise) {
-        addQuadrics(patch);
+        patch.quadrics = quadricsOf(patch.view());
         addMiddles(made, near, patch);
         patch.setBox(lowIndex, Brick::kSide);
         for (std::size_t v = 0; v < patch.points.size(); ++v) {
@@ -260,8 +215,8 @@ BrickSurface simplifyBrick(const FineBrick& made, const Index3& lowIndex, const 
         }
         PatchSimplifier(patch, frame, limits).collapseEdges(patch.ownTriangles, costs);
     }
-    const std::vector<std::uint32_t> newVertex = takeOver(patch, result);
-    keepFine(made, newVertex, patch.heirs, result);
+    takeOver(patch, result);
+    keepFine(made, result);
     return result;
 }
 
@@ -312,14 +267,6 @@ public:
 
 private:
     using Number = SurfaceState::Number;
-
-    /// A vertex on walls, from the bricks before, all together.
-    struct WallVertex {
-        std::uint64_t edge;
-        Number vertex, triangle;
-        Vec3 normal;  ///< sum of the bricks'
-        std::uint8_t clearance;
-    };
 
     void requireRoomFor(const BrickSurface& brick) const {
         const auto fits = [](const auto& whole, const auto& part, std::size_t most) {
@@ -385,12 +332,7 @@ private:
             if (brick.states[v] == Patch::State::Final) {
                 joined_.states[number_[v]] = Patch::State::Final;
             }
-            if (!brick.isWhole) {
-                StoredQuadric& sum = joined_.quadrics[number_[v]];
-                for (std::size_t n = 0; n < sum.number.size(); ++n) {
-                    sum.number[n] += brick.quadrics[v].number[n];
-                }
-            }
+            if (!brick.isWhole) joined_.quadrics[number_[v]] += brick.quadrics[v];
         }
         wallNumber_.clear();
         for (const auto& wall : brick.walls) {
@@ -469,8 +411,7 @@ SimplifiedSurface simplifyBricks(const LatticeSampler& sampler, const Bricks& br
         for (std::int64_t& along : lowIndex) along -= bricks.grid().offset;
         BrickSurface brick = simplifyBrick(fine, lowIndex, frame, limits, moving,
                                            costs != nullptr ? &(*costs)[b] : nullptr);
-        brick.tableTriangles =
-            std::ssize(brick.fine.triangles) - 2 * static_cast<std::int64_t>(fine.surface.middles);
+        brick.tableTriangles = std::ssize(brick.fine.triangles) - 2 * fine.surface.middles;
         return brick;
     };
     Joiner joiner(bricks, limits.keepsHeirs);

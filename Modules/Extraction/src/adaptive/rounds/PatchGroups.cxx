@@ -15,6 +15,30 @@ constexpr std::int64_t kPiece = 1 << 14;
 /// Cubes in the bounding box at most.
 constexpr double kMostCubes = 1 << 20;
 
+using Numbers = std::vector<std::uint32_t>;
+
+/// The numbers 0 .. n by a key; those whose key is too large are left out.
+template <class KeyOf>
+auto grouped(std::size_t groups, std::size_t n, const KeyOf& keyOf) {
+    return Buckets<std::uint32_t, std::uint32_t>(groups, [&](const auto& give) {
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint64_t key = keyOf(i);
+            if (key < groups) give(key, i);
+        }
+    });
+}
+
+/// The place of each of `n` numbers in its group.
+Numbers placesIn(const Buckets<std::uint32_t, std::uint32_t>& groups, std::size_t n) {
+    Numbers places;
+    assignInHugePages(places, n);
+    for (std::size_t g = 0; g < groups.count(); ++g) {
+        std::uint32_t place = 0;
+        for (const std::uint32_t member : groups.of(g)) places[member] = place++;
+    }
+    return places;
+}
+
 }  // namespace
 
 PatchCubes::PatchCubes(const SurfaceState& surface, const PatchCut& cut, const MetricFrame& frame)
@@ -66,14 +90,14 @@ PatchGroups::PatchGroups(const SimplifiedSurface& surface, const PatchCut& cut,
     parallelInvoke([&] { groupVertices(); }, [&] { groupTriangles(); },
                    [&] {
                        if (isOne()) return;  // it has them all
-                       samples_ = Groups(count(), surface.samples.size(), [&](std::size_t s) {
+                       samples_ = grouped(count(), surface.samples.size(), [&](std::size_t s) {
                            return cubeOfTriangle_[surface.sampleTriangle[s]];
                        });
                    });
 }
 
-std::vector<std::uint32_t> PatchGroups::cubesOfVertices() const {
-    std::vector<std::uint32_t> cubes;
+Numbers PatchGroups::cubesOfVertices() const {
+    Numbers cubes;
     assignInHugePages(cubes, surface_.points.size());
     parallelForPieces(static_cast<std::int64_t>(cubes.size()), kPiece,
                       [&](std::int64_t begin, std::int64_t end) {
@@ -84,8 +108,8 @@ std::vector<std::uint32_t> PatchGroups::cubesOfVertices() const {
     return cubes;
 }
 
-std::vector<std::uint32_t> PatchGroups::cubesOfTriangles() const {
-    std::vector<std::uint32_t> cubes;
+Numbers PatchGroups::cubesOfTriangles() const {
+    Numbers cubes;
     assignInHugePages(cubes, surface_.triangles.size());
     parallelForPieces(
         static_cast<std::int64_t>(cubes.size()), kPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -134,20 +158,18 @@ BoundingBox PatchGroups::indexBoxOf(const SurfaceState::Triangle& triangle) cons
 
 void PatchGroups::groupVertices() {
     vertices_ =
-        Groups(count(), surface_.points.size(), [&](std::size_t v) { return cubeOfVertex_[v]; });
-    assignInHugePages(placeOfVertex_, surface_.points.size());
-    vertices_.number(placeOfVertex_);
+        grouped(count(), surface_.points.size(), [&](std::size_t v) { return cubeOfVertex_[v]; });
+    placeOfVertex_ = placesIn(vertices_, surface_.points.size());
 }
 
 void PatchGroups::groupTriangles() {
-    triangles_ = Groups(count(), surface_.triangles.size(),
-                        [&](std::size_t t) { return cubeOfTriangle_[t]; });
-    assignInHugePages(placeOfTriangle_, surface_.triangles.size());
-    triangles_.number(placeOfTriangle_);
+    triangles_ = grouped(count(), surface_.triangles.size(),
+                         [&](std::size_t t) { return cubeOfTriangle_[t]; });
+    placeOfTriangle_ = placesIn(triangles_, surface_.triangles.size());
     if (isOne()) return;
     listObstacles();
     strayedSamples_ =
-        Groups(obstacleTriangles_.size(), surface_.samples.size(), [&](std::size_t s) {
+        grouped(obstacleTriangles_.size(), surface_.samples.size(), [&](std::size_t s) {
             const std::uint32_t t = surface_.sampleTriangle[s];
             return cubeOfTriangle_[t] == kNone ? placeOfTriangle_[t] : kNone;
         });
@@ -179,30 +201,17 @@ bool PatchGroups::isIdle(std::size_t n) const {
 
 std::vector<std::int64_t> PatchGroups::shares(std::int64_t total) const {
     std::vector<std::int64_t> share(count(), total);
-    const auto all = static_cast<double>(triangles_.memberCount());
+    const auto all = static_cast<double>(triangles_.itemCount());
     if (static_cast<double>(total) > all) return share;
     std::int64_t dealt = 0;
     for (std::size_t n = 0; n < count(); ++n) {
-        const double upToHere = static_cast<double>(triangles_.upTo(n)) / all;
+        const double upToHere = static_cast<double>(triangles_.of(0, n + 1).size()) / all;
         const auto due =
             static_cast<std::int64_t>(std::floor(upToHere * static_cast<double>(total) + 0.5));
         share[n] = due - dealt;
         dealt = due;
     }
     return share;
-}
-
-/// The samples of the cube's triangles, triangle by triangle.
-void PatchGroups::sortSamples(std::size_t n, std::vector<std::uint32_t>& sorted) const {
-    const auto members = samples_.of(n);
-    const auto triangleOf = [&](std::uint32_t s) {
-        return placeOfTriangle_[surface_.sampleTriangle[s]];
-    };
-    std::vector<std::uint32_t> at(triangles_.of(n).size() + 1, 0);
-    for (const std::uint32_t s : members) ++at[triangleOf(s) + 1];
-    for (std::size_t t = 1; t < at.size(); ++t) at[t] += at[t - 1];
-    sorted.resize(members.size());
-    for (const std::uint32_t s : members) sorted[at[triangleOf(s)]++] = s;
 }
 
 Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
@@ -239,17 +248,17 @@ Patch PatchGroups::take(std::size_t n, PatchScratch& scratch) const {
     if (isOne()) {
         patch.sampleTriangle = surface_.sampleTriangle;  // triangles have their own numbers
     } else {
-        addSamples(n, patch, scratch);
+        addSamples(n, patch);
         addObstacles(n, patch, scratch);
     }
     return patch;
 }
 
-void PatchGroups::addSamples(std::size_t n, Patch& patch, PatchScratch& scratch) const {
-    sortSamples(n, scratch.samples);
-    patch.samples.reserve(scratch.samples.size());
-    patch.sampleTriangle.reserve(scratch.samples.size());
-    for (const std::uint32_t s : scratch.samples) {
+void PatchGroups::addSamples(std::size_t n, Patch& patch) const {
+    const auto members = samples_.of(n);
+    patch.samples.reserve(members.size());
+    patch.sampleTriangle.reserve(members.size());
+    for (const std::uint32_t s : members) {
         patch.samples.push_back(surface_.samples[s]);
         patch.sampleTriangle.push_back(placeOfTriangle_[surface_.sampleTriangle[s]]);
     }
@@ -283,10 +292,11 @@ void PatchGroups::addObstacles(std::size_t n, Patch& patch, PatchScratch& scratc
     scratch.outsideVertices.clear();
 }
 
-void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch& scratch,
-                          SimplifiedSurface& surface) const {
+void PatchGroups::putBack(std::size_t n, const Patch& patch, SimplifiedSurface& surface,
+                          Numbers& mergedInto) const {
     const auto members = vertices_.of(n);
     for (std::size_t v = 0; v < members.size(); ++v) {
+        if (!mergedInto.empty()) mergedInto[members[v]] = members[patch.heirs[v]];
         surface.states[members[v]] = patch.states[v];
         if (!patch.marks.empty()) surface.marks[members[v]] = patch.marks[v];
         // those that other patches look at have not changed, and must not be written
@@ -296,8 +306,9 @@ void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch&
     }
     const auto own = triangles_.of(n);
     if (isOne()) surface.sampleTriangle = patch.sampleTriangle;
-    for (std::size_t i = 0; i < scratch.samples.size(); ++i) {
-        surface.sampleTriangle[scratch.samples[i]] = own[patch.sampleTriangle[i]];
+    const auto samples = samples_.of(n);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        surface.sampleTriangle[samples[i]] = own[patch.sampleTriangle[i]];
     }
     for (std::size_t t = 0; t < own.size(); ++t) {
         for (int c = 0; c < 3; ++c) {
@@ -305,14 +316,6 @@ void PatchGroups::putBack(std::size_t n, const Patch& patch, const PatchScratch&
             surface.triangles[own[t]][c] =
                 v == Patch::kGone ? SimplifiedSurface::kGone : members[v];
         }
-    }
-}
-
-void PatchGroups::noteMerges(std::size_t n, const Patch& patch,
-                             std::vector<std::uint32_t>& mergedInto) const {
-    const auto members = vertices_.of(n);
-    for (std::size_t v = 0; v < members.size(); ++v) {
-        mergedInto[members[v]] = members[patch.heirs[v]];
     }
 }
 

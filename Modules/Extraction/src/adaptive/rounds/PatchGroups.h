@@ -60,38 +60,8 @@ void PatchCubes::forEachIn(const BoundingBox& indexBox, const F& f) const {
     }
 }
 
-/// Numbers 0 .. n sorted by a small key, in their order where it is equal; those whose key is too
-/// large are left out.
-class Groups {
-public:
-    Groups() = default;
-    template <class KeyOf>
-    Groups(std::size_t groups, std::size_t n, const KeyOf& keyOf)
-        : members_(groups, [&](const auto& give) {
-              for (std::size_t i = 0; i < n; ++i) {
-                  const std::uint64_t key = keyOf(i);
-                  if (key < groups) give(key, static_cast<std::uint32_t>(i));
-              }
-          }) {}
-    std::span<const std::uint32_t> of(std::size_t group) const { return members_.of(group); }
-    /// Gives each member its place in its group.
-    void number(std::vector<std::uint32_t>& places) const {
-        for (std::size_t g = 0; g < members_.count(); ++g) {
-            std::uint32_t place = 0;
-            for (const std::uint32_t member : of(g)) places[member] = place++;
-        }
-    }
-    /// How many members the groups up to one have together.
-    std::size_t upTo(std::size_t group) const { return members_.of(0, group + 1).size(); }
-    std::size_t memberCount() const { return members_.itemCount(); }
-
-private:
-    Buckets<std::uint32_t, std::uint32_t> members_;
-};
-
 /// Buffers of a thread that works on patches, one after the other.
 struct PatchScratch {
-    std::vector<std::uint32_t> samples;        ///< of the patch's own triangles, in its order
     std::vector<std::uint32_t> outsideNumber;  ///< number + 1 in the patch, of the whole's vertices
     std::vector<std::uint32_t> outsideVertices;  ///< that have one
 };
@@ -120,16 +90,13 @@ public:
 
     /// Writes what take() copied, and has changed since, back to the surface. Different patches
     /// touch different members, so this may run in parallel.
-    /// \param scratch  as take() left it
-    void putBack(std::size_t n, const Patch& patch, const PatchScratch& scratch,
-                 SimplifiedSurface& surface) const;
-    /// Says of each vertex of a patch what it was merged into.
-    /// \param mergedInto  of each vertex of the surface
-    void noteMerges(std::size_t n, const Patch& patch,
-                    std::vector<std::uint32_t>& mergedInto) const;
+    /// \param mergedInto  of each vertex of the surface: gets what it was merged into; may be empty
+    void putBack(std::size_t n, const Patch& patch, SimplifiedSurface& surface,
+                 std::vector<std::uint32_t>& mergedInto) const;
 
 private:
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+    using Groups = Buckets<std::uint32_t, std::uint32_t>;  ///< of members' numbers
 
     std::vector<std::uint32_t> cubesOfVertices() const;
     std::vector<std::uint32_t> cubesOfTriangles() const;
@@ -140,8 +107,7 @@ private:
     void groupTriangles();
     void listObstacles();
     BoundingBox indexBoxOf(const SurfaceState::Triangle& triangle) const;
-    void sortSamples(std::size_t n, std::vector<std::uint32_t>& sorted) const;
-    void addSamples(std::size_t n, Patch& patch, PatchScratch& scratch) const;
+    void addSamples(std::size_t n, Patch& patch) const;
     void addObstacles(std::size_t n, Patch& patch, PatchScratch& scratch) const;
 
     const SimplifiedSurface& surface_;

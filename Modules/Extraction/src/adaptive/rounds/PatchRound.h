@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 #include "adaptive/collapse/PatchSimplifier.h"
 #include "adaptive/mesh/MetricFrame.h"
@@ -22,20 +21,8 @@ struct PatchWork {
 
 /// Works on the surface in the patches of a cut, side by side. Triangles that straddle two cubes
 /// stay as they are.
-class PatchRound {
-public:
-    PatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame);
-
-    /// Once.
-    /// \param costs  gets those of the collapses, patch by patch; may be null
-    void run(const PatchWork& work, CollapseCosts* costs = nullptr);
-
-private:
-    void lendSamples(Patch& patch) const;
-
-    SimplifiedSurface& surface_;
-    const MetricFrame& frame_;
-    std::optional<PatchGroups> groups_;  ///< none after run()
-};
+/// \param costs  gets those of the collapses, patch by patch; may be null
+void runPatchRound(SimplifiedSurface& surface, const PatchCut& cut, const MetricFrame& frame,
+                   const PatchWork& work, CollapseCosts* costs = nullptr);
 
 }  // namespace adaptiso::detail

@@ -55,24 +55,6 @@ bool isWithin(double times, std::int64_t triangles, std::int64_t target) {
     return static_cast<double>(triangles) <= times * static_cast<double>(target);
 }
 
-/// A copy of what rounds change.
-class Checkpoint {
-public:
-    explicit Checkpoint(const SimplifiedSurface& surface)
-        : state_(surface), quadrics_(surface.quadrics) {}
-
-    std::int64_t triangleCount() const { return state_.triangleCount(); }
-    /// Once.
-    void restore(SimplifiedSurface& surface) {
-        surface.state() = std::move(state_);
-        surface.quadrics = std::move(quadrics_);
-    }
-
-private:
-    SurfaceState state_;
-    std::vector<StoredQuadric> quadrics_;
-};
-
 }  // namespace
 
 Simplification::Simplification(const FullSurface& full, const PatchLimits& limits)
@@ -110,7 +92,7 @@ void Simplification::roundUpTo(double cost, SimplifiedSurface& surface, bool fit
     if (isAllFinal(surface)) return;
     PatchWork work{limits_};
     work.fits = fits;
-    PatchRound(surface, nextCut(surface), frame_).run(work);
+    runPatchRound(surface, nextCut(surface), frame_, work);
     fits_ = fits ? 1 : 0;
     surface.returnFreedMemory();
 }
@@ -163,16 +145,16 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
         work.mostCollapses = wanted;
         work.fits = dealsOut;
     }
-    std::optional<Checkpoint> kept;
+    std::optional<SurfaceState> kept;
     CollapseCosts costs;
-    if (maySurpass) kept.emplace(surface);
-    PatchRound(surface, cut, frame_).run(work, maySurpass ? &costs : nullptr);
+    if (maySurpass) kept = surface.state();
+    runPatchRound(surface, cut, frame_, work, maySurpass ? &costs : nullptr);
     const bool hasSurpassed = maySurpass && surface.triangleCount() + 1 < target;
     if (hasSurpassed) {
-        kept->restore(surface);
+        surface.state() = std::move(*kept);
         work.limits.maxCost = costLimitFor(costs, wanted);
         work.fits = true;
-        PatchRound(surface, cut, frame_).run(work);
+        runPatchRound(surface, cut, frame_, work);
     }
     fits_ = work.fits ? fits_ + 1 : 0;
     limits_.triedCost = work.limits.maxCost;
@@ -182,13 +164,6 @@ void Simplification::roundTowards(SimplifiedSurface& surface, std::int64_t targe
 }
 
 SimplifiedSurface Simplification::toCount(const WantedCount& wanted, double farthestMm) {
-    SimplifiedSurface surface = towards(wanted, farthestMm);
-    fit(surface);
-    return surface;
-}
-
-/// All but the last fits.
-SimplifiedSurface Simplification::towards(const WantedCount& wanted, double farthestMm) {
     CollapseCosts costs;
     double cost = kFirstCost;
     limits_.maxCost = cost * costUnit_;
@@ -207,13 +182,14 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
     // far from the full surface its planes hold vertices in vain: those of this one may not
     for (bool helps = limits_.maxDistanceMm < farthestMm;
          helps && !isWithin(kMet, surface.triangleCount(), target);) {
-        Checkpoint before(surface);
+        SurfaceState before = surface.state();
         beginAnew(surface);
         approach(surface, target, farthestMm);
         helps = isWithin(kMet, surface.triangleCount(), target) ||
                 leavesLess(kWorthDoubling, surface.triangleCount(), before.triangleCount());
-        if (!helps) before.restore(surface);
+        if (!helps) surface.state() = std::move(before);
     }
+    fit(surface);
     return surface;
 }
 
@@ -221,7 +197,7 @@ SimplifiedSurface Simplification::towards(const WantedCount& wanted, double fart
 /// distance doubled again and again.
 void Simplification::approach(SimplifiedSurface& surface, std::int64_t target, double farthestMm) {
     double cost = kFirstCost;
-    std::optional<Checkpoint> worthwhile;  // after the last doubling that was
+    std::optional<SurfaceState> worthwhile;  // after the last doubling that was
     double worthwhileMm = 0;
     std::int64_t last = std::numeric_limits<std::int64_t>::max();
     for (int helpless = 0; helpless < kMostHelpless;) {
@@ -241,7 +217,7 @@ void Simplification::approach(SimplifiedSurface& surface, std::int64_t target, d
         const std::int64_t now = surface.triangleCount();
         if (isWithin(kMet, now, target) || farthestMm == 0) return;
         if (leavesLess(kWorthDoubling, now, last)) {
-            worthwhile.emplace(surface);
+            worthwhile = surface.state();
             worthwhileMm = limits_.maxDistanceMm;
         }
         last = now;
@@ -251,7 +227,7 @@ void Simplification::approach(SimplifiedSurface& surface, std::int64_t target, d
         goFarther(surface);
         cost = kCostAfterDistance;
     }
-    worthwhile->restore(surface);
+    surface.state() = std::move(*worthwhile);
     limits_.maxDistanceMm = worthwhileMm;
 }
 
@@ -264,16 +240,9 @@ void Simplification::goFarther(SimplifiedSurface& surface) {
 
 /// Forgets the planes of the full surface: vertices get those of the triangles that there are.
 void Simplification::beginAnew(SimplifiedSurface& surface) {
-    std::vector<Quadric> sums(surface.points.size());
-    for (const SurfaceState::Triangle& t : surface.triangles) {
-        const Vec3& a = surface.points[t[0]];
-        const Quadric q =
-            Quadric::ofTriangle(areaVector2(a, surface.points[t[1]], surface.points[t[2]]), a);
-        for (const SurfaceState::Number v : t) sums[v] += q;
-    }
+    setQuadrics(surface);
     std::vector<std::uint8_t> isOnBorder(surface.marks.size());
     for (std::size_t v = 0; v < surface.points.size(); ++v) {
-        surface.quadrics[v] = StoredQuadric::of(sums[v], surface.points[v]);
         if (surface.states[v] != Patch::State::Final) surface.states[v] = Patch::State::Open;
         if (!isOnBorder.empty()) isOnBorder[v] = surface.marks[v] == Patch::kBorder ? 1 : 0;
     }
@@ -291,7 +260,7 @@ void Simplification::fit(SimplifiedSurface& surface) {
     work.fits = true;
     const bool isFull = surface.triangleCount() == surface.fineTriangles;
     for (; !isFull && fits_ < 2 && !isAllFinal(surface); ++fits_) {
-        PatchRound(surface, nextCut(surface), frame_).run(work);
+        runPatchRound(surface, nextCut(surface), frame_, work);
     }
     freeMemory(surface.quadrics);
 }

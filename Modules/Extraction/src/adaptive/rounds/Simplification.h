@@ -47,7 +47,6 @@ private:
     PatchCut nextCut(const SimplifiedSurface& surface);
     void roundUpTo(double cost, SimplifiedSurface& surface, bool fits = false);
     SimplifiedSurface beginGently();
-    SimplifiedSurface towards(const WantedCount& wanted, double farthestMm);
     void approach(SimplifiedSurface& surface, std::int64_t target, double farthestMm);
     void goFarther(SimplifiedSurface& surface);
     void beginAnew(SimplifiedSurface& surface);

@@ -61,6 +61,11 @@ struct StoredQuadric {
         }
         return stored;
     }
+    /// Of the same point.
+    StoredQuadric& operator+=(const StoredQuadric& q) {
+        for (std::size_t i = 0; i < number.size(); ++i) number[i] += q.number[i];
+        return *this;
+    }
     Quadric about(const Vec3& origin) const {
         Quadric q;
         q.xx = number[0], q.xy = number[1], q.xz = number[2];
