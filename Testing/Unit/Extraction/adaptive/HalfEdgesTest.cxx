@@ -98,6 +98,32 @@ TEST(HalfEdges, AreListedByTheirVertexInAscendingOrder) {
     EXPECT_EQ(listed, 3 * mesh.triangles.size());
 }
 
+// Edges between them and the others are like those of a border.
+TEST(HalfEdges, MayBeOfSomeTrianglesAlone) {
+    const TriangleMesh mesh = icosphere(1);
+    const std::vector<VertexId> all = twinsOf(mesh);
+    // a triangle and those around it
+    std::vector<VertexId> some{3, all[9] / 3, all[10] / 3, all[11] / 3};
+    std::sort(some.begin(), some.end());
+    HalfEdges halfEdges;
+    halfEdges.assign(mesh.points.size(), mesh.triangles, some);
+    std::vector<VertexId> twin;
+    halfEdges.match(twin);
+    const auto isMeant = [&](VertexId h) {
+        return std::find(some.begin(), some.end(), h / 3) != some.end();
+    };
+    int matched = 0;
+    for (VertexId h = 0; h < std::ssize(all); ++h) {
+        const bool isInner = isMeant(h) && isMeant(all[h]);
+        EXPECT_EQ(twin[h], isInner ? all[h] : HalfEdges::kNone);
+        matched += isInner ? 1 : 0;
+    }
+    EXPECT_EQ(matched, 6);
+    for (VertexId v = 0; v < std::ssize(mesh.points); ++v) {
+        for (const VertexId h : halfEdges.from(v)) EXPECT_TRUE(isMeant(h));
+    }
+}
+
 // Beyond 32,768 triangles several threads work.
 TEST(HalfEdges, AreTheSameForManyTriangles) {
     const TriangleMesh one = withDuplicateTriangle(withHole(torusMesh(20, 10, 3, 1)));

@@ -20,11 +20,6 @@ using Number = SurfaceState::Number;
 
 constexpr std::int64_t kPiece = 256, kFinePiece = 2048;
 
-Corners cornersOf(const SimplifiedSurface& surface, std::uint64_t t) {
-    const SurfaceState::Triangle& c = surface.triangles[t];
-    return {surface.points[c[0]], surface.points[c[1]], surface.points[c[2]]};
-}
-
 /// Bounds proved for some triangles.
 struct PartBound {
     double provedMm = 0;    ///< of all that lies within the limit
@@ -54,13 +49,10 @@ public:
     void include(const Corners& piece, std::span<const Index> starts, int steps,
                  const MakePlace& makePlace) {
         walk_.cover(ConvexPiece(piece), to_.walkable, starts[0], bound_.squaredBound(), steps);
-        if (walk_.left().empty()) return;
-        collectAround(starts);
         for (const ConvexPiece& left : walk_.left()) {
             for (int i = 2; i < left.count(); ++i) {
                 const Corners part{left.corner(0), left.corner(i - 1), left.corner(i)};
-                bound_.nearby() = around_;
-                if (!bound_.isWithin(part)) search(part, makePlace);
+                search(part, makePlace);
             }
         }
     }
@@ -73,20 +65,6 @@ public:
     }
 
 private:
-    /// The triangles where walks start, and those that share a corner with them.
-    void collectAround(std::span<const Index> starts) {
-        numbers_.clear();
-        for (const Index t : starts) {
-            to_.walkable.forEachBeside(t, [&](Index beside) { numbers_.push_back(beside); });
-        }
-        std::sort(numbers_.begin(), numbers_.end());
-        const auto end = std::unique(numbers_.begin(), numbers_.end());
-        around_.clear();
-        for (auto at = numbers_.begin(); at != end; ++at) {
-            around_.push_back(to_.walkable.cornersOf(*at));
-        }
-    }
-
     /// Among all triangles that can be as near as the bound; where those are not near enough, among
     /// all that can be nearer than what the corners are known to be.
     template <class MakePlace>
@@ -131,8 +109,6 @@ private:
     double limitMm_;
     PieceBound bound_;
     SurfaceWalk walk_;
-    std::vector<Index> numbers_;
-    std::vector<Corners> around_;     ///< where walks start
     std::vector<std::int64_t> near_;  ///< as bound_.nearby()
     PartBound result_;
 };
@@ -305,9 +281,9 @@ double largestSampleDistance(const SimplifiedSurface& surface) {
     parallelForPieces(count, kSamples, [&](std::int64_t begin, std::int64_t end) {
         double& here = largest[begin / kSamples];
         for (std::int64_t s = begin; s < end; ++s) {
-            here = std::max(
-                here, squaredDistanceToTriangle(surface.samples[s].point(),
-                                                cornersOf(surface, surface.sampleTriangle[s])));
+            here = std::max(here, squaredDistanceToTriangle(
+                                      surface.samples[s].point(),
+                                      surface.view().cornersOf(surface.sampleTriangle[s])));
         }
     });
     return std::sqrt(*std::max_element(largest.begin(), largest.end()));
@@ -320,7 +296,7 @@ bool isFineSurface(const SimplifiedSurface& surface, const TriangleView& fine) {
     parallelForPieces(std::ssize(surface.triangles), kFinePiece,
                       [&](std::int64_t begin, std::int64_t end) {
                           for (std::int64_t t = begin; t < end && isSame; ++t) {
-                              if (cornersOf(surface, t) != fine.cornersOf(t)) isSame = false;
+                              if (surface.view().cornersOf(t) != fine.cornersOf(t)) isSame = false;
                           }
                       });
     return isSame;
@@ -344,19 +320,17 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface) {
     enoughMm_ =
         std::min(limitMm_, std::max(largestSampleDistance(surface), 0.01 * frame_.narrowestMm()));
     if (fine_.isEmpty()) fine_.assign(fineView_.points, fineView_.triangles);
-    walkable_.assign(surface.points, surface.triangles);
     return prove(surface, Scope());
 }
 
 ErrorBound DistanceProof::proveAgain(const SimplifiedSurface& surface,
                                      const SurfaceChanges& changes) {
     if (walkable_.isEmpty()) return prove(surface);
-    walkable_.assign(surface.points, surface.triangles);
     return prove(surface, scopeOf(surface, changes));
 }
 
 ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
-    const TriangleView view{surface.points, surface.triangles};
+    const TriangleView view = surface.view();
     TreeOnDemand tree(view);
     const Task task{{fine_, fineView_, fineTree_},
                     {walkable_, view, tree},
@@ -364,6 +338,7 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& s
                     frame_.voxelMm(),
                     enoughMm_,
                     limitMm_};
+    walkable_.assign(surface.points, surface.triangles, trianglesFor(scope, view, task.assigned));
     const std::vector<std::uint32_t> starts = startsOf(surface, task);
     const std::int64_t fineCount = std::ssize(fineView_.triangles), count = surface.triangleCount(),
                        finePieces = (fineCount + kFinePiece - 1) / kFinePiece,
@@ -406,6 +381,31 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& s
     return bound;
 }
 
+/// Triangles of the simplified surface that maps and walks from unknown ones of the full surface
+/// come to: two rings around those that their vertices are assigned to. Beyond, searches prove.
+/// Empty: all.
+std::vector<Number> DistanceProof::trianglesFor(const Scope& scope, const TriangleView& simplified,
+                                                const std::vector<Number>& assigned) const {
+    std::vector<Number> triangles;
+    if (scope.isFineKnown.empty()) return triangles;
+    std::vector<std::uint8_t> isNear(simplified.points.size());
+    const auto mark = [&](Number t) {
+        for (const Number v : simplified.triangles[t]) isNear[v] = 1;
+    };
+    forEachUnknown(scope.isFineKnown, 0, std::ssize(scope.isFineKnown), [&](std::uint32_t t) {
+        for (const std::uint32_t v : fineView_.triangles[t]) mark(assigned[v]);
+    });
+    for (int ring = 0; ring < 2; ++ring) {
+        for (const Number t : triangles) mark(t);
+        triangles.clear();
+        for (Number t = 0; t < simplified.triangles.size(); ++t) {
+            const auto& [a, b, c] = simplified.triangles[t];
+            if ((isNear[a] | isNear[b] | isNear[c]) != 0) triangles.push_back(t);
+        }
+    }
+    return triangles;
+}
+
 void DistanceProof::remember(std::size_t triangles, std::vector<PlaceBeyond> beyond) {
     isWithin_.assign(triangles, 1);
     for (const PlaceBeyond& place : beyond) {
@@ -426,7 +426,7 @@ DistanceProof::Scope DistanceProof::scopeOf(const SimplifiedSurface& surface,
     }
     std::vector<Corners> changed = changes.before;
     for (std::size_t t = 0; t < scope.isKnown.size(); ++t) {
-        if (scope.isKnown[t] == 0) changed.push_back(cornersOf(surface, t));
+        if (scope.isKnown[t] == 0) changed.push_back(surface.view().cornersOf(t));
     }
     markFine(changed, scope);
     return scope;

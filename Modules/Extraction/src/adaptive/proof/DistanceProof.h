@@ -66,6 +66,9 @@ private:
     Scope scopeOf(const SimplifiedSurface& surface, const SurfaceChanges& changes);
     void remember(std::size_t triangles, std::vector<PlaceBeyond> beyond);
     void markFine(const std::vector<Corners>& changed, Scope& scope);
+    std::vector<SurfaceState::Number> trianglesFor(
+        const Scope& scope, const TriangleView& simplified,
+        const std::vector<SurfaceState::Number>& assigned) const;
     ErrorBound prove(const SimplifiedSurface& surface, const Scope& scope);
 
     TriangleView fineView_;

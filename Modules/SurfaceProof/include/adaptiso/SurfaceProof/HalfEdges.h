@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/SurfaceProof/OrderedBuckets.h"
 
 namespace adaptiso::detail {
 
@@ -23,11 +23,17 @@ public:
     static constexpr Index kNone = std::numeric_limits<Index>::max();
 
     /// Keeps a reference to the triangles.
-    void assign(std::size_t points, std::span<const std::array<Index, 3>> triangles) {
+    /// \param some  of them, ascending: of these alone; empty: of all
+    void assign(std::size_t points, std::span<const std::array<Index, 3>> triangles,
+                std::span<const Index> some = {}) {
         triangles_ = triangles;
-        leaving_.assign(points, triangles.size(), [&](std::size_t t, const auto& put) {
-            for (std::size_t c = 0; c < 3; ++c) {
-                put(triangles[t][c], static_cast<Index>(3 * t + c));
+        leaving_.assign(points, [&](const auto& give) {
+            const std::size_t count = some.empty() ? triangles.size() : some.size();
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::size_t t = some.empty() ? i : static_cast<std::size_t>(some[i]);
+                for (std::size_t c = 0; c < 3; ++c) {
+                    give(triangles[t][c], static_cast<Index>(3 * t + c));
+                }
             }
         });
     }
@@ -62,7 +68,7 @@ public:
     /// The opposite of each half-edge, or kNone. Where several run along an edge they are matched
     /// in ascending order.
     void match(std::vector<Index>& twin) const {
-        assignInHugePages(twin, 3 * triangles_.size());
+        assignInHugePages(twin, 3 * triangles_.size(), kNone);
         forEachFan([&](std::span<const Spoke> spokes) { matchFan(spokes, twin); });
     }
 
@@ -101,7 +107,7 @@ private:
     }
 
     std::span<const std::array<Index, 3>> triangles_;
-    OrderedBuckets<Index, Index> leaving_;  ///< half-edges, of each vertex
+    Buckets<Index, Index> leaving_;  ///< half-edges, of each vertex
 };
 
 }  // namespace adaptiso::detail

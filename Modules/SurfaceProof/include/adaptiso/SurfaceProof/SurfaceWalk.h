@@ -54,12 +54,14 @@ class WalkableSurface {
 public:
     static constexpr Index kNone = std::numeric_limits<Index>::max();
 
-    /// Keeps references to both.
-    void assign(std::span<const Vec3> points, std::span<const std::array<Index, 3>> triangles) {
+    /// Keeps references to points and triangles.
+    /// \param some  triangles, ascending, beyond which no walk need go; empty: all
+    void assign(std::span<const Vec3> points, std::span<const std::array<Index, 3>> triangles,
+                std::span<const Index> some = {}) {
         points_ = points;
         triangles_ = triangles;
         normals_.clear();
-        halfEdges_.assign(points.size(), triangles);
+        halfEdges_.assign(points.size(), triangles, some);
         halfEdges_.match(twin_);
     }
 
