@@ -13,6 +13,8 @@ namespace {
 constexpr double kBeyondMm = 3, kStepMm = 0.1;
 /// Less than this is no skull: what interpolation spreads beside it.
 constexpr double kLeastMm = 0.25;
+/// Of the inner skull's height: foramina and a base that was not segmented stay below.
+constexpr double kBaseHeight = 0.6;
 
 /// The part of skull at a place, between the voxels' centres; 0 outside of the image.
 double skullAt(const SegmentedHead& head, const Vec3& pointMm) {
@@ -107,7 +109,7 @@ double quantile(std::vector<std::pair<double, double>> values, double share) {
     return values.back().first;
 }
 
-/// The connected parts without skull that do not hold the lowest of all vertices.
+/// The connected parts without skull, but for one at the lowest vertex that is an open base.
 void findHoles(const TriangleMesh& inner, const std::vector<Place>& places,
                SkullComparison& comparison) {
     DisjointSets sets(std::ssize(places));
@@ -118,16 +120,18 @@ void findHoles(const TriangleMesh& inner, const std::vector<Place>& places,
         }
     }
     const std::vector<VertexId> root = std::move(sets).names();
-    VertexId lowest = 0;
-    for (VertexId v = 1; v < std::ssize(places); ++v) {
-        if (inner.points[v].z < inner.points[lowest].z) lowest = v;
+    const auto isLower = [](const Vec3& l, const Vec3& r) { return l.z < r.z; };
+    const auto [low, high] = std::minmax_element(inner.points.begin(), inner.points.end(), isLower);
+    const auto lowest = low - inner.points.begin();
+    bool hasOpenBase = !places[lowest].hasSkull();
+    for (std::size_t v = 0; v < places.size() && hasOpenBase; ++v) {
+        hasOpenBase = root[v] != root[lowest] ||
+                      inner.points[v].z <= low->z + kBaseHeight * (high->z - low->z);
     }
     std::vector<double> areaMm2(places.size());
     std::vector<Vec3> middle(places.size());
     for (std::size_t v = 0; v < places.size(); ++v) {
-        if (places[v].hasSkull() || (!places[lowest].hasSkull() && root[v] == root[lowest])) {
-            continue;
-        }
+        if (places[v].hasSkull() || (hasOpenBase && root[v] == root[lowest])) continue;
         areaMm2[root[v]] += places[v].areaMm2;
         middle[root[v]] += places[v].areaMm2 * inner.points[v];
     }

@@ -71,5 +71,18 @@ TEST(CompareSkull, MeasuresAHoleAndLeavesTheForamenOut) {
     EXPECT_LT(norm(*found.holeMm - Vec3{58, 0, 0}), 2);
 }
 
+// as where the label of the right half's bone was not named
+TEST(CompareSkull, AHalfWithoutSkullIsNoOpenBaseThoughItHoldsTheLowestVertex) {
+    const SegmentedHead half = shell(60, 66, [](const Vec3& p) { return p.x > -2; });
+    const SegmentedHead base = shell(60, 66, [](const Vec3& p) { return p.z < 2; });
+    const TriangleMesh inner = testing::icosphere(5, {0, 0, 0}, 60),
+                       outer = testing::icosphere(5, {0, 0, 0}, 63);
+    const double sphere = 4 * kPi * 60 * 60;
+    EXPECT_NEAR(compareSkull(inner, outer, half).largestHoleMm2, 0.5 * sphere, 0.05 * sphere);
+    const SkullComparison open = compareSkull(inner, outer, base);
+    EXPECT_NEAR(open.absentMm2, 0.5 * sphere, 0.05 * sphere);
+    EXPECT_EQ(open.largestHoleMm2, 0);
+}
+
 }  // namespace
 }  // namespace adaptiso

@@ -23,8 +23,8 @@ struct SegmentedHead {
 struct SkullComparison {
     double areaMm2 = 0;
     double absentMm2 = 0;        ///< where the segmentation has no skull
-    double largestHoleMm2 = 0;   ///< of that, the largest connected part but for the lowest one,
-                                 ///< where the foramen magnum lies
+    double largestHoleMm2 = 0;   ///< of that, the largest connected part but for an open base: the
+                                 ///< lowest one, if it stays below 0.6 of the inner skull's height
     std::optional<Vec3> holeMm;  ///< its middle, LPS
     double medianMm = 0;         ///< thickness of the segmentation's skull, where there is one
     double thinMm = 0;           ///< 5 % of that area have less
@@ -34,7 +34,7 @@ struct SkullComparison {
     double mostThickenedMm = 0;       ///< by how much at most
     std::optional<Vec3> thickenedMm;  ///< where, LPS
     /// Vertices of the inner skull in holes of more than kHoleMm2: connected parts without skull in
-    /// the segmentation, but for the lowest one.
+    /// the segmentation, but for an open base.
     std::vector<VertexId> holeVertices;
 
     static constexpr double kHoleMm2 = 500;  ///< orbits and canals have less
