@@ -149,14 +149,15 @@ PointFile decodeTsv(std::string_view bytes) {
     return file;
 }
 
+/// Newer files name the positions, and hold them in a plane and the head's shape as well.
 PointFile decodeElc(std::string_view bytes) {
     ByteSource source(bytes);
     PointFile file;
     file.format = "ASA .elc";
-    std::vector<std::string> names;
-    std::vector<Vec3> points;
-    double mm = 0;
-    enum { Header, Positions, Labels } part = Header;
+    std::vector<std::string> names, labels;
+    std::vector<Vec3> points, shape;
+    double mm = 0, shapeMm = 0;
+    enum { Header, Positions, Labels, Shape } part = Header;
     while (!source.atEnd()) {
         const std::string_view line = trimmed(source.line());
         if (line.empty() || line.front() == '#') continue;
@@ -164,32 +165,47 @@ PointFile decodeElc(std::string_view bytes) {
         const std::string_view first = words.word();
         if (first == "UnitPosition") {
             mm = unitMm(words.requireWord("a unit"));
+        } else if (first == "UnitHeadShapePoints") {
+            shapeMm = unitMm(words.requireWord("a unit"));
         } else if (first == "Positions") {
             part = Positions;
         } else if (first == "Labels") {
             part = Labels;
-        } else if (part == Positions) {
+        } else if (first == "HeadShapePoints") {
+            part = Shape;
+        } else if (first == "Positions2D" || first == "Polygons" ||
+                   first.starts_with("NumberPolygons") ||
+                   first.starts_with("NumberHeadShapePoints")) {
+            part = Header;
+        } else if (part == Positions || part == Shape) {
             const std::size_t colon = line.find(':');
-            if (colon != line.npos) names.emplace_back(trimmed(line.substr(0, colon)));
+            if (part == Positions && colon != line.npos) {
+                names.emplace_back(trimmed(line.substr(0, colon)));
+            }
             ByteSource numbers(colon == line.npos ? line : line.substr(colon + 1));
             Vec3 point;
             for (int a = 0; a < 3; ++a) point[a] = numbers.realWord("a coordinate");
-            points.push_back(point);
+            (part == Positions ? points : shape).push_back(point);
         } else if (part == Labels) {
             for (std::string_view word = first; !word.empty(); word = words.word()) {
-                names.emplace_back(word);
+                labels.emplace_back(word);
             }
         }
-        if (points.size() > kMostPoints || names.size() > kMostPoints) {
+        if (std::max(points.size() + shape.size(), labels.size()) > kMostPoints) {
             damaged("it holds more than 100,000 points");
         }
     }
-    if (names.size() != points.size()) {
+    if (names.empty()) names = labels;
+    if (names.size() != points.size() || (!labels.empty() && labels.size() != points.size())) {
         damaged("it has " + std::to_string(points.size()) + " positions and " +
-                std::to_string(names.size()) + " labels");
+                std::to_string(labels.empty() ? names.size() : labels.size()) + " labels");
     }
     for (std::size_t n = 0; n < points.size(); ++n) {
         add(file, names[n], points[n], kindOf(names[n]));
+    }
+    const double shapeUnits = mm > 0 && shapeMm > 0 ? shapeMm / mm : 1;
+    for (std::size_t n = 0; n < shape.size(); ++n) {
+        add(file, "extra" + std::to_string(n + 1), shapeUnits * shape[n], PointKind::Other);
     }
     if (mm > 0) scale(file, mm);
     return file;

@@ -71,6 +71,18 @@ TEST(PointFiles, OfOthersAreReadToo) {
         ".elc", "a.elc");
     EXPECT_EQ(elc.points[0].kind, PointKind::LeftEar);
     EXPECT_EQ(elc.points[1].point.z, 99);
+    // as FieldTrip reads ANT's newer files (read_asa_elc.m, ft_read_headshape.m)
+    const PointFile newer = decodePoints(
+        "UnitPosition\tmm\nNumberPositions=\t2\nPositions\nNz\t:\t0 100 0\nOz 1 :\t0 -99 1\n"
+        "Positions2D\nNz : 0 1\nOz 1 : 0 -1\nNumberPolygons=\t1\nTypePolygons=\t3\nPolygons\n"
+        "0 1 1\nLabels\nNz\tOz1\nNumberHeadShapePoints=\t1\nUnitHeadShapePoints\tcm\n"
+        "HeadShapePoints\n0 0 9.8\n",
+        ".elc", "newer.elc");
+    ASSERT_EQ(newer.points.size(), 3u);
+    EXPECT_EQ(newer.points[0].kind, PointKind::Nasion);
+    EXPECT_EQ(newer.points[1].name, "Oz 1");
+    EXPECT_EQ(newer.points[2].kind, PointKind::Other);
+    EXPECT_DOUBLE_EQ(newer.points[2].point.z, 98);
     const PointFile sfp =
         decodePoints("FidNz\t-10.89\t0.04\t-4.30\nE1 -1.52 -2.31 6.98\n", ".sfp", "a");
     EXPECT_EQ(sfp.points[0].kind, PointKind::Nasion);
@@ -103,6 +115,8 @@ TEST(PointFiles, RefuseDamageInOneLine) {
                   .find("three numbers"),
               std::string::npos);
     EXPECT_NE(refused("Positions\n1 2 3\nLabels\nA B\n", ".elc").find("2 labels"),
+              std::string::npos);
+    EXPECT_NE(refused("Positions\nA : 1 2 3\nLabels\nA B\n", ".elc").find("2 labels"),
               std::string::npos);
     EXPECT_NE(refused("Cz 1 2\n", ".sfp").find("a coordinate"), std::string::npos);
     EXPECT_NE(refused("name 1 2 3, of no FIFF file at all\n", ".fif").find("FIFF"),
