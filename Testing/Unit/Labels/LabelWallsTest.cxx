@@ -54,11 +54,10 @@ TEST(ExtractLabels, KeepsTheVolumeOfThinTubes) {
     // round ends of radius r at a distance of 40; thinner tubes lose some of their volume
     const Vec3 along = normalized({1, 2, 3}), middle{0.13, -0.21, 0.37};
     for (const auto& [radius, part] : std::map<double, double>{{4, 0.005}, {1.5, 0.03}}) {
-        const Map map =
-            Map::inSpace(centredGeometry({49, 57, 61}), [&, radius = radius](const Vec3& p) {
-                const double t = std::clamp(dot(p - middle, along), -20.0, 20.0);
-                return norm(p - middle - t * along) < radius ? 1 : 0;
-            });
+        const Map map = Map::inSpace(centredGeometry({49, 57, 61}), [&, r = radius](const Vec3& p) {
+            const double t = std::clamp(dot(p - middle, along), -20.0, 20.0);
+            return norm(p - middle - t * along) < r ? 1 : 0;
+        });
         const auto measures = measureRegions(extractLabels(map.view(), fullResolution()).complex);
         const double volume = std::numbers::pi * radius * radius * 40 +
                               4 * std::numbers::pi * std::pow(radius, 3) / 3;
