@@ -87,6 +87,16 @@ class Electrodes(BemTest):
         self.assert_on_skin(self.table())
         self.assertIn("cap.sfp: does not say its unit; taken for cm", done.stderr)
 
+    # exchanged ears turn "up" round, as a mirrored axis does; the ball's skin is as near below
+    def test_a_cap_below_its_own_nasion_and_ears_is_refused(self):
+        lines = [f"Nz 0 {SKIN} 0", f"LPA {SKIN} 0 0", f"RPA -{SKIN} 0 0"]
+        for name, (x, y, z) in directions().items():
+            lines.append(f"{name} {80 * x} {80 * y} {80 * z}")
+        self.path("cap.sfp").write_text("\n".join(lines) + "\n")
+        for frame in ((), ("--electrodes-in", "ras")):
+            self.fails(BAD_INPUT, r"--electrodes cap.sfp: the electrodes lie \d\d mm below nasion and ears on average",
+                       *self.labels(), "--electrodes", "cap.sfp", *frame, *(LANDMARKS if not frame else ()), "-o", "model")
+
     def test_a_frame_that_nothing_tells_is_refused(self):
         self.path("cap.elc").write_text("UnitPosition mm\nPositions\n0 0 80\nLabels\nCz\n")
         self.fails(BAD_INPUT, "says no coordinate frame.*--electrodes-in ras, lps or tkras",

@@ -145,12 +145,28 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
     return file.points;
 }
 
+/// A cap sits above nasion and ears, some 45 mm on average.
+void requireAbove(const Landmarks& landmarks, const std::vector<Vec3>& places) {
+    constexpr double kFarBelowMm = 20;
+    const Vec3 ears = 0.5 * (landmarks.leftEarMm + landmarks.rightEarMm);
+    const Vec3 up = cross(landmarks.rightEarMm - landmarks.leftEarMm, landmarks.nasionMm - ears);
+    double sum = 0;
+    for (const Vec3& place : places) sum += dot(place - ears, up) / norm(up);
+    const double aboveMm = sum / static_cast<double>(places.size());
+    if (!(aboveMm < -kFarBelowMm)) return;
+    throw InvalidInput(
+        "the electrodes lie " + formatFixed(-aboveMm, 0) +
+        " mm below nasion and ears on average: are the ears exchanged, or is an axis "
+        "of the file mirrored?");
+}
+
 void project(std::vector<NamedPoint> points, BemModel& model, BemElectrodes& placed) {
     std::erase_if(points, [](const NamedPoint& p) { return p.kind != PointKind::Electrode; });
     if (points.empty() && placed.headPoints) return;
     if (points.empty()) throw InvalidInput("the file holds no electrode");
     std::vector<Vec3> places;
     for (const NamedPoint& p : points) places.push_back(p.point);
+    if (placed.landmarks) requireAbove(*placed.landmarks, places);
     const OntoSkin onto = projectedOntoSkin(places, model.meshes.back());
     placed.meanMovedMm = onto.meanMm;
     placed.farthestMovedMm = onto.farthestMm;
