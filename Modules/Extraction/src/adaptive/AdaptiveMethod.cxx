@@ -54,10 +54,10 @@ private:
     struct Attempt {
         SimplifiedSurface surface;
         DistanceProof proof;
-        ErrorBound error;
-        TriangleMesh mesh;  ///< of the surface; empty where that lies beyond the bound
+        ErrorBound error{};
+        TriangleMesh mesh{};  ///< of the surface; empty where that lies beyond the bound
         /// Its triangles that cross others, or whose piece lies on the wrong side of another
-        std::vector<std::int64_t> crossing;
+        std::vector<std::int64_t> crossing{};
     };
 
     /// The surface is proved to lie within the bound, to cross nothing, and to have each piece on
@@ -141,12 +141,8 @@ private:
                                 kMended * static_cast<double>(before);
             idle = isLess ? 0 : idle + 1;
         }
-        keepChanged(mender);
-    }
-
-    void keepChanged(const SurfaceMender& mender) {
-        const auto& changed = mender.changedTriangles();
-        mended_.insert(mended_.end(), changed.begin(), changed.end());
+        mended_.insert(mended_.end(), mender.changedTriangles().begin(),
+                       mender.changedTriangles().end());
     }
 
     /// Takes the simplification back around places, as far as anything comes of it, and proves what
@@ -193,7 +189,8 @@ private:
                              full_.box());
         const std::size_t mended = mender.mendCrossings(attempt.crossing, wanted_.isGiven());
         work_.placesMended += static_cast<std::int64_t>(mended);
-        keepChanged(mender);
+        mended_.insert(mended_.end(), mender.changedTriangles().begin(),
+                       mender.changedTriangles().end());
         if (mended > 0) {
             attempt.error = attempt.proof.proveAgain(attempt.surface, mender.takeChanges());
         }
@@ -229,22 +226,16 @@ private:
 
     Attempt simplify(bool isCareful) {
         mended_.clear();
-        SimplifiedSurface surface = simplified(limits(isCareful));
-        const TriangleView fine = full_.fineOf(surface);
-        return {std::move(surface),
-                DistanceProof(fine, frame_, boundMm_.value_or(std::numeric_limits<double>::max())),
-                {},
-                {},
-                {}};
-    }
-
-    SimplifiedSurface simplified(const PatchLimits& limits) const {
-        Simplification simplification(full_, limits);
-        if (!wanted_.isGiven()) return simplification.toLimits();
+        Simplification simplification(full_, limits(isCareful));
         WantedCount wanted = wanted_;
         wanted.fewer = fewer_;
         // without a bound the count goes before closeness
-        return simplification.toCount(wanted, boundMm_ ? 0 : full_.largestExtentMm());
+        const double farthestMm = boundMm_ ? 0 : full_.largestExtentMm();
+        SimplifiedSurface surface = wanted.isGiven() ? simplification.toCount(wanted, farthestMm)
+                                                     : simplification.toLimits();
+        const TriangleView fine = full_.fineOf(surface);
+        return {std::move(surface),
+                DistanceProof(fine, frame_, boundMm_.value_or(std::numeric_limits<double>::max()))};
     }
 
     const FullSurface& full_;

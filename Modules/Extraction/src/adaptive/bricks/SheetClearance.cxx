@@ -11,6 +11,7 @@
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptive/Parameters.h"
+#include "adaptive/mesh/Patch.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -37,9 +38,7 @@ public:
     }
 
     static Place placeOf(const Vec3& p, const Vec3& normal) {
-        const Vec3 n = normalized(normal);
-        return {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
-                {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)}};
+        return {Sample::positionOf(p), Sample::positionOf(normalized(normal))};
     }
 
     /// Squared distance to the nearest point of another sheet, or `most`.

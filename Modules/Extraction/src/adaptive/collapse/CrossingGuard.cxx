@@ -117,14 +117,26 @@ void CrossingGuard::markPieces() {
     for (std::size_t v = 0; v < pieceOf_.size(); ++v) {
         pieceOf_[v] = numbers[sets.find(static_cast<std::int64_t>(v))];
     }
+    marksAt_.resize(entriesAt_.size());
+    for (std::uint32_t piece = 0; piece < marks_.size(); ++piece) enterMark(piece);
+}
+
+void CrossingGuard::enterMark(std::uint32_t piece) {
+    const Vec3& p = patch_.points[marks_[piece]];
+    const Cubes at = cubesOf(rounded({p, p}));
+    forEachRow(at, [&](std::size_t row, std::int32_t, std::int32_t) {
+        marksAt_[row + static_cast<std::size_t>(at.first[0])].push_back(piece);
+    });
 }
 
 /// A mark that the change moves goes to the ring, which stays.
 void CrossingGuard::moveMark(const Star& star) {
     if (pieceOf_.empty()) return;
-    std::uint32_t& mark = marks_[pieceOf_[star.ring[0]]];
+    const std::uint32_t piece = pieceOf_[star.ring[0]];
     const auto end = star.apex.begin() + star.count;
-    if (star.isOpen || std::find(star.apex.begin(), end, mark) != end) mark = star.ring[0];
+    if (!star.isOpen && std::find(star.apex.begin(), end, marks_[piece]) == end) return;
+    marks_[piece] = star.ring[0];
+    enterMark(piece);
 }
 
 CrossingGuard::Cubes CrossingGuard::cubesOf(const Box& box) const {
@@ -252,10 +264,16 @@ bool CrossingGuard::sweepsOver(const ChangedStar& changed) const {
                            });
     };
     const std::uint32_t own = pieceOf_[star.ring[0]];
-    for (std::uint32_t piece = 0; piece < marks_.size(); ++piece) {
-        if (piece != own && isSwept(patch_.points[marks_[piece]])) return true;
-    }
-    return false;
+    const Cubes cubes = cubesOf(rounded(swept));
+    bool found = false;
+    forEachRow(cubes, [&](std::size_t row, std::int32_t, std::int32_t) {
+        for (std::int32_t x = cubes.first[0]; x <= cubes.last[0]; ++x) {
+            for (const std::uint32_t piece : marksAt_[row + x]) {
+                found = found || (piece != own && isSwept(patch_.points[marks_[piece]]));
+            }
+        }
+    });
+    return found;
 }
 
 /// Some triangle across an edge of the ring faces away from the star.
@@ -391,7 +409,7 @@ void CrossingGuard::collectFromGrid() {
 }
 
 void CrossingGuard::addNear(std::uint32_t triangle) {
-    if (isSeen(triangle)) return;
+    if (known_[triangle].stamp == now_) return;
     known_[triangle].stamp = now_;
     if (boxAt(triangle).overlaps(starBox_)) near_.push_back(triangle);
 }

@@ -74,7 +74,6 @@ private:
         std::uint32_t next, count = 0;  ///< next: those that the cube has besides
         std::array<std::uint32_t, kMost> triangle;
     };
-    bool isSeen(std::uint32_t triangle) const { return known_[triangle].stamp == now_; }
     void buildGrid();
     std::vector<std::uint8_t> trianglesInSingleSheets() const;
     Cubes cubesOf(const Box& box) const;
@@ -92,6 +91,7 @@ private:
     void collectFromGrid();
     void addNear(std::uint32_t triangle);
     void markPieces();
+    void enterMark(std::uint32_t piece);
     void moveMark(const Star& star);
     bool sweepsOver(const ChangedStar& changed) const;
 
@@ -113,6 +113,8 @@ private:
 
     std::vector<std::uint32_t> pieceOf_;  ///< of each vertex; empty where all are of one piece
     std::vector<std::uint32_t> marks_;    ///< of each piece: one of its vertices
+    /// Pieces by the cubes of their marks; some marks have moved since, and are in both.
+    std::vector<std::vector<std::uint32_t>> marksAt_;
 };
 
 }  // namespace adaptiso::detail

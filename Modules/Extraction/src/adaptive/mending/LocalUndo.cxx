@@ -26,9 +26,6 @@ enum class Fan : std::uint8_t { Closed, Open, Broken };
 
 /// \param links  of one vertex
 Fan fanOf(std::span<const Link> links) {
-    const auto linkFrom = [&](Number v) {
-        return std::find_if(links.begin(), links.end(), [&](const Link& l) { return l.from == v; });
-    };
     const auto begin = std::find_if(links.begin(), links.end(), [&](const Link& link) {
         return std::none_of(links.begin(), links.end(),
                             [&](const Link& l) { return l.to == link.from; });
@@ -38,7 +35,8 @@ Fan fanOf(std::span<const Link> links) {
     auto at = first;
     do {
         ++seen;
-        at = linkFrom(at->to);
+        at = std::find_if(links.begin(), links.end(),
+                          [to = at->to](const Link& l) { return l.from == to; });
     } while (at != links.end() && at != first && seen < links.size());
     if (seen < links.size() || (at != first && at != links.end())) return Fan::Broken;
     return at == first ? Fan::Closed : Fan::Open;

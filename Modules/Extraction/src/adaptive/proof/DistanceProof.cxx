@@ -310,10 +310,8 @@ DistanceProof::DistanceProof(const TriangleView& fine, const MetricFrame& frame,
 ErrorBound DistanceProof::prove(const SimplifiedSurface& surface) {
     provedMm_ = 0;
     if (isFineSurface(surface, fineView_)) {
-        enoughMm_ = std::min(limitMm_, 0.01 * frame_.narrowestMm());
         walkable_ = {};
         isFine_.assign(surface.triangles.size(), 1);
-        remember(surface.triangles.size(), {});
         return {};
     }
     // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
