@@ -232,11 +232,8 @@ TEST(BoundariesFromLabels, RefuseTissuesInAnotherOrderThanTheyLie) {
                              quick());
     };
     EXPECT_NO_THROW(inOrder(1, 2, 3));
-    for (const auto& [brain, skull, scalp] :
-         {std::array{1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2}, {3, 2, 1}}) {
-        expectRefused(
-            [&, brain = brain, skull = skull, scalp = scalp] { inOrder(brain, skull, scalp); },
-            "named in the right order?");
+    for (const auto& order : {std::array{1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2}, {3, 2, 1}}) {
+        expectRefused([&] { inOrder(order[0], order[1], order[2]); }, "named in the right order?");
     }
 }
 

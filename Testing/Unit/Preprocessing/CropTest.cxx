@@ -44,8 +44,8 @@ TEST(Crop, KeepsThePlaceOfEveryVoxel) {
         const auto view = cropped.view().as<double>();
         ASSERT_EQ(view.geometry.size, (Index3{5, 5, 3}));
         EXPECT_EQ(view.geometry.indexToPhysical, geometry.indexToPhysical) << name;
-        forEachVoxel(view.geometry, [&, &name = name](std::size_t n, const Vec3& point) {
-            EXPECT_NEAR(view.samples[n], along(point), 1e-9) << name;  // values up to 1e5
+        forEachVoxel(view.geometry, [&, &kind = name](std::size_t n, const Vec3& point) {
+            EXPECT_NEAR(view.samples[n], along(point), 1e-9) << kind;  // values up to 1e5
         });
     }
 }
