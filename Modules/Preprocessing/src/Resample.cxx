@@ -120,11 +120,11 @@ double linearAt(const F* samples, const Index3& size, const Vec3& place) {
         lowest += below * stride;
         stride *= size[axis];
     }
-    const auto along = [&](const auto& along, std::int64_t from, int axis) -> double {
+    const auto along = [&](const auto& self, std::int64_t from, int axis) -> double {
         if (axis < 0) return static_cast<double>(samples[from]);
-        const double a = along(along, from, axis - 1);
+        const double a = self(self, from, axis - 1);
         if (step[axis] == 0) return a;
-        return a + (along(along, from + step[axis], axis - 1) - a) * part[axis];
+        return a + (self(self, from + step[axis], axis - 1) - a) * part[axis];
     };
     return along(along, lowest, 2);
 }
