@@ -74,13 +74,13 @@ std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& sha
                     "save it as GZipBase64Binary, all in one file");
     }
     requireRoom("columns", shape.columns, 1, array.text.size());  // so that no product overflows
-    const std::int64_t columns = shape.columns, count = shape.rows * columns;
+    const std::int64_t columns = shape.columns;
     std::vector<T> numbers;
     if (columns == 0) return numbers;
     if (encoding == "ASCII") {
         requireRoom(what, shape.rows, 2 * columns - 1, array.text.size());  // "0 0 0"
         ByteSource words(array.text);
-        for (std::int64_t i = 0; i < count; ++i) {
+        for (std::int64_t i = 0; i < shape.rows * columns; ++i) {
             if constexpr (std::is_integral_v<Stored>) {
                 numbers.push_back(static_cast<T>(words.integerWord(what)));
             } else {
@@ -97,6 +97,7 @@ std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& sha
     if (isPacked) requirePlausibleSize(stored.size(), shape.rows * rowBytes);
     const std::string bytes = isPacked ? inflated(stored, shape.rows * rowBytes) : stored;
     const bool isBig = attributeOr(array.attributes, "Endian", "LittleEndian") == "BigEndian";
+    const std::int64_t count = shape.rows * columns;
     numbers.reserve(count);
     for (std::int64_t i = 0; i < count; ++i) {
         numbers.push_back(static_cast<T>(loadAs<Stored>(
