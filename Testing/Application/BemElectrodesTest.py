@@ -97,6 +97,15 @@ class Electrodes(BemTest):
             self.fails(BAD_INPUT, r"--electrodes cap.sfp: the electrodes lie \d\d mm below nasion and ears on average",
                        *self.labels(), "--electrodes", "cap.sfp", *frame, *(LANDMARKS if not frame else ()), "-o", "model")
 
+    def test_exchanged_ears_are_refused_without_electrodes_too(self):
+        side, low = 0.8 * SKIN, -0.6 * SKIN
+        left, right = f"-{side},0,{low}", f"{side},0,{low}"
+        landmarks = ["--nasion", f"0,{side},{low}", "--montage", "10-20", "-o", "model"]
+        self.bem(*self.labels(), f"--left-ear={left}", f"--right-ear={right}", *landmarks, "--force")
+        self.assertGreater(self.table()["Cz"][2], 0)
+        self.fails(BAD_INPUT, r"the inner skull's vertices lie \d\d mm below nasion and ears on average",
+                   *self.labels(), f"--left-ear={right}", f"--right-ear={left}", *landmarks[:-1], "again")
+
     def test_a_frame_that_nothing_tells_is_refused(self):
         self.path("cap.elc").write_text("UnitPosition mm\nPositions\n0 0 80\nLabels\nCz\n")
         self.fails(BAD_INPUT, "says no coordinate frame.*--electrodes-in ras, lps or tkras",

@@ -13,7 +13,7 @@ namespace {
 constexpr double kBeyondMm = 3, kStepMm = 0.1;
 /// Less than this is no skull: what interpolation spreads beside it.
 constexpr double kLeastMm = 0.25;
-/// Of the inner skull's height: foramina and a base that was not segmented stay below.
+/// Part of the inner skull's height below which foramina and a base that was not segmented stay.
 constexpr double kBaseHeight = 0.6;
 
 /// The part of skull at a place, between the voxels' centres; 0 outside of the image.

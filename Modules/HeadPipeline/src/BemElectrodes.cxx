@@ -145,8 +145,10 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
     return file.points;
 }
 
-/// A cap sits above nasion and ears, some 45 mm on average.
-void requireAbove(const Landmarks& landmarks, const std::vector<Vec3>& places) {
+/// Caps and inner skulls lie above the plane of nasion and ears, some 45 mm on average.
+/// \param what  the places' name in the refusal
+void requireAbove(const Landmarks& landmarks, const std::vector<Vec3>& places,
+                  const std::string& what) {
     constexpr double kFarBelowMm = 20;
     const Vec3 ears = 0.5 * (landmarks.leftEarMm + landmarks.rightEarMm);
     const Vec3 up = cross(landmarks.rightEarMm - landmarks.leftEarMm, landmarks.nasionMm - ears);
@@ -155,9 +157,9 @@ void requireAbove(const Landmarks& landmarks, const std::vector<Vec3>& places) {
     const double aboveMm = sum / static_cast<double>(places.size());
     if (!(aboveMm < -kFarBelowMm)) return;
     throw InvalidInput(
-        "the electrodes lie " + formatFixed(-aboveMm, 0) +
+        what + " lie " + formatFixed(-aboveMm, 0) +
         " mm below nasion and ears on average: are the ears exchanged, or is an axis "
-        "of the file mirrored?");
+        "mirrored?");
 }
 
 void project(std::vector<NamedPoint> points, BemModel& model, BemElectrodes& placed) {
@@ -166,7 +168,7 @@ void project(std::vector<NamedPoint> points, BemModel& model, BemElectrodes& pla
     if (points.empty()) throw InvalidInput("the file holds no electrode");
     std::vector<Vec3> places;
     for (const NamedPoint& p : points) places.push_back(p.point);
-    if (placed.landmarks) requireAbove(*placed.landmarks, places);
+    if (placed.landmarks) requireAbove(*placed.landmarks, places, "the electrodes");
     const OntoSkin onto = projectedOntoSkin(places, model.meshes.back());
     placed.meanMovedMm = onto.meanMm;
     placed.farthestMovedMm = onto.farthestMm;
@@ -199,6 +201,11 @@ void place(BemModel& model, BemElectrodes& placed) {
     if (options.file) project(inModelSpace(model, placed), model, placed);
     const bool needsLandmarks = options.positions || options.wantsLandmarks;
     if (!placed.landmarks && needsLandmarks) guess(model, placed);
+    if (placed.landmarks) {
+        const std::size_t innerSkull = model.options.boundaries.withBrain ? 1 : 0;
+        requireAbove(*placed.landmarks, model.meshes[innerSkull].points,
+                     "the inner skull's vertices");
+    }
     if (!options.positions) return;
     if (!placed.landmarks) throw InvalidInput("positions need nasion and ears; give them");
     placed.points = standardPositions(model.meshes.back(), *placed.landmarks, *options.positions);

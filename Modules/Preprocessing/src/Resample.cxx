@@ -107,7 +107,8 @@ Volume nearest(const VolumeView& volume, const ImageGeometry& grid, Word outside
     return Volume(VolumeView(samples.get(), volume.pixelType(), grid), samples);
 }
 
-/// Of the eight voxels around `place`, which is inside; the border's values go on beyond it.
+/// Interpolates between the eight voxels around `place`. Beyond the border its values go on.
+/// \pre isInside(place)
 template <class F>
 double linearAt(const F* samples, const Index3& size, const Vec3& place) {
     std::array<std::int64_t, 3> step{};  // from the lower voxel to the upper; 0 where one decides

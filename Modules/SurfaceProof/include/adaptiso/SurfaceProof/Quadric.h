@@ -61,7 +61,7 @@ struct StoredQuadric {
         }
         return stored;
     }
-    /// Of the same point.
+    /// \param q  relative to the same point
     StoredQuadric& operator+=(const StoredQuadric& q) {
         for (std::size_t i = 0; i < number.size(); ++i) number[i] += q.number[i];
         return *this;
