@@ -54,9 +54,7 @@ std::string programVersion() {
 }
 
 std::string versionText(const std::string& programName) {
-    const std::string itk = ADAPTISO_ITK_VERSION;
-    return programName + " " + programVersion() + "\nbuilt " +
-           (itk.empty() ? "without ITK" : "with ITK " + itk) + ", " + threadingName();
+    return programName + " " + programVersion() + "\n" + threadingName();
 }
 
 struct ThreadLimit::Impl {

@@ -32,7 +32,7 @@ void declareVersion(CLI::App& app);
 /// "0.1.0"
 std::string programVersion();
 
-/// Name, version and what libraries it stands on, as --version prints them.
+/// Name, version and the library of threads, as --version prints them.
 std::string versionText(const std::string& programName);
 
 /// While one lives, parallel work takes no more threads than asked for and than can be started.

@@ -6,15 +6,23 @@
 #   Applications/web/run.sh [--quick]           both; --quick: linked in seconds, a tenth larger
 #   Applications/web/run.sh [--quick] --test    and tests them beside the native programs in ADAPTISO_BIN, or
 #                                               build/release/bin: the modules' unit tests, the programs and
-#                                               the package under Node, the page in Chromium and Firefox.
-#                                               Ends with ctest's summary and its exit code
+#                                               the package under Node, the page in Chromium and Firefox;
+#                                               --quick: without the unit tests of Extraction, Labels and
+#                                               HeadModel, which take minutes and whose results are in the
+#                                               programs' bytes. Ends with ctest's summary and its exit code
 set -euo pipefail
 
 link=-O3
+unitTests=(unitTests)
+without=()
 isTest=
 for option; do
     case $option in
-        --quick) link=-O1 ;;
+        --quick)
+            link=-O1
+            unitTests=(testCore testImageIO testMeshIO testMeshQuality testSpanSpace)
+            without=(-E '^(Extraction|AdaptiveClasses|Labels|HeadModel)$')
+            ;;
         --test) isTest=yes ;;
         *) echo "Applications/web/run.sh: unknown option $option; --quick and --test are known" >&2; exit 2 ;;
     esac
@@ -38,7 +46,7 @@ fi
 
 export NODE_PATH=/usr/share/nodejs  # acorn, which Emscripten's linker needs, for a Node that is not Debian's
 cmake --log-level=WARNING --preset web -DADAPTISO_WEB_LINK=$link
-cmake --build --preset web --target adaptisoWeb adaptisoNode ${isTest:+unitTests}
+cmake --build --preset web --target adaptisoWeb adaptisoNode ${isTest:+"${unitTests[@]}"}
 version=$(sed -n 's/^project(adaptiso VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 node Applications/web/npm/build.mjs build/web "$version"
 cd Applications/web/page
@@ -47,5 +55,5 @@ npm run --silent check
 node build.mjs "$top/build/web" "$version"
 if [[ $isTest ]]; then
     cd "$top"
-    exec ctest --preset web -j "$(nproc)"
+    exec ctest --preset web -j "$(nproc)" "${without[@]}"
 fi

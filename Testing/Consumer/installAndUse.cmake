@@ -11,7 +11,7 @@ run(${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${WORK}/pref
 cmake_path(GET SOURCE FILENAME name)
 set(options "")
 if(name STREQUAL sphere)
-    # Extraction and MeshIO rest on neither ITK nor VTK: finding them is forbidden, and REQUIRED ones then fail
+    # it asks for no adaptor: finding ITK and VTK is forbidden, and REQUIRED ones then fail
     set(options -DCMAKE_DISABLE_FIND_PACKAGE_ITK=ON -DCMAKE_DISABLE_FIND_PACKAGE_VTK=ON)
 endif()
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR}
