@@ -25,7 +25,7 @@ function(adaptiso_npm_file variable)
                             WORKING_DIRECTORY ${folder} TIMEOUT 120 OUTPUT_QUIET ERROR_QUIET)
         else()
             file(DOWNLOAD https://registry.npmjs.org/${A_PACKAGE}/-/${name}-${A_VERSION}.tgz
-                 ${package} TIMEOUT 120 STATUS downloaded)
+                 ${package} TIMEOUT 120 INACTIVITY_TIMEOUT 20 STATUS downloaded)
             list(GET downloaded 0 error)
             if(error)
                 file(REMOVE ${package})
