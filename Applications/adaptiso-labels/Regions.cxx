@@ -203,8 +203,7 @@ std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsOptions& 
         }
     }
     std::ranges::sort(chosen);
-    const auto repeated = std::ranges::unique(chosen);
-    chosen.erase(repeated.begin(), repeated.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     return chosen;
 }
 

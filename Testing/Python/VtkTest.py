@@ -153,8 +153,15 @@ class IsosurfaceTest(InFolder):
         filter.AddObserver("ProgressEvent", stop)
         self.assertEqual(errors_of(filter), [])
         self.assertEqual(filter.GetOutput().GetNumberOfPoints(), 0)
+        if seen[-1] == 1:  # VTK 9.3's own
+            del seen[-1]
         self.assertGreater(len(seen), 1)
         self.assertLess(max(seen), 0.9)
+        filter.RemoveAllObservers()
+        filter.AbortExecuteOff()  # VTK 9.1 does it itself
+        filter.Modified()
+        filter.Update()
+        self.assertGreater(filter.GetOutput().GetNumberOfPoints(), 0)
 
     def test_what_cannot_be_used_is_an_error_event(self):
         image = image_of(ball(), np.eye(4))

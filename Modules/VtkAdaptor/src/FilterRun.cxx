@@ -1,5 +1,7 @@
 #include "FilterRun.h"
 
+#include <vtkVersionMacros.h>
+
 #include <algorithm>
 #include <exception>
 
@@ -28,10 +30,16 @@ ProgressCallback FilterRun::progress(int part, int parts) {
 std::string FilterRun::run(const std::function<void()>& work) {
     const std::function<void()> look = [this] { endIfAborted(); };
     try {
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+        if (filter_.GetAbortOutput()) throw Aborted();  // its input was
+#endif
         const InterruptionCheck check(look);
         work();
     } catch (const Aborted&) {
         isAborted_ = true;
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+        filter_.SetAbortOutput(true);  // filters downstream are told by it
+#endif
     } catch (const std::exception& error) {
         return error.what();
     }

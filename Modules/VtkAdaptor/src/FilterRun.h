@@ -10,7 +10,8 @@
 
 namespace adaptiso::vtk {
 
-/// Work of this library inside a VTK filter: progress events out, AbortExecute in.
+/// Work of this library inside a VTK filter: progress events out, AbortExecute in (from VTK 9.3 on
+/// of filters upstream too).
 class FilterRun {
 public:
     explicit FilterRun(vtkAlgorithm& filter) : filter_(filter) {}

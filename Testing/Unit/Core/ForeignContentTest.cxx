@@ -29,7 +29,9 @@ std::string tarOf(const std::string& name) {
 class ForeignFiles : public ::testing::Test {
 protected:
     void SetUp() override {
-        folder_ = fs::path(::testing::TempDir()) / "ForeignFiles";
+        // a folder each: ctest runs them side by side
+        folder_ = fs::path(::testing::TempDir()) /
+                  ::testing::UnitTest::GetInstance()->current_test_info()->name();
         fs::remove_all(folder_);
         fs::create_directories(folder_);
     }

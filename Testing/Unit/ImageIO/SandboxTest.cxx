@@ -182,10 +182,8 @@ TEST(Sandbox, BoundsMemory) {
 #endif
     const SandboxLimits small{30s, std::uint64_t{64} << 20};
     const auto hoard = []() -> ReadVolume {
-        for (;;) {
-            auto* const block = new std::byte[std::size_t{1} << 20];
-            std::fill_n(block, std::size_t{1} << 20, std::byte{1});
-        }
+        std::vector<std::vector<std::byte>> blocks;
+        for (;;) blocks.emplace_back(std::size_t{1} << 20, std::byte{1});
     };
     expectOneLine(refusal(hoard, small), "memory");
     expectOneLine(refusal([]() -> ReadVolume {

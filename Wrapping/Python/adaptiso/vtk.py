@@ -81,10 +81,13 @@ class _Filter(VTKPythonAlgorithmBase):  # type: ignore[misc]
 
     def _run(self, work: Callable[[], None]) -> int:
         """\\return VTK's verdict"""
+        # from VTK 9.3 on filters tell those downstream that they were aborted
+        if getattr(self, "GetAbortOutput", bool)():
+            return 1
         try:
             work()
         except _Aborted:
-            pass
+            getattr(self, "SetAbortOutput", bool)(True)
         except Error as error:
             text = f"{type(self).__name__}: {error}"
             if self.HasObserver("ErrorEvent"):
