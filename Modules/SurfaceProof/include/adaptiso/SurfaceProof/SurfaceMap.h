@@ -207,7 +207,7 @@ private:
                 const double squared = pair.squaredDistance();
                 if (squared < least) nearest = pair, least = squared, next = beside;
             }
-            if (least > most || cuts_.size() == way.begin + kFewCuts) {
+            if (next == kNone || least > most || cuts_.size() == way.begin + kFewCuts) {
                 cuts_.resize(way.begin);
                 return false;
             }
