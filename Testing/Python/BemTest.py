@@ -273,6 +273,7 @@ class FourLayers(InFolder):
             if file.suffix not in (".json", ".md") or file.name == "coordsystem.json":
                 self.assertEqual((ours / file.name).read_bytes(), file.read_bytes(), file.name)
 
+    @needs("nibabel")
     def test_sources_are_the_programs_to_the_byte(self):
         import nibabel
         cortex = adaptiso.surface((spheres(radii=(40, 66, 72)) == 1).astype(np.uint8), 0.5, affine=affine())

@@ -72,6 +72,7 @@ def blocks_of(page, *changes):
 
 
 @unittest.skipUnless(BRAIN.exists(), "mricron-data is not installed")
+@needs("nibabel")
 class Pages(InFolder):
     """Blocks of pages run as they stand there, one after the other, in a folder with the files they name."""
 
@@ -127,7 +128,7 @@ class Pages(InFolder):
         alike = [np.corrcoef(a, b)[0, 1] for a, b in zip(fields[0].T, fields[1].T)]
         self.assertGreater(np.median(alike), 0.9)
 
-    @needs("nibabel", "mne", "tqdm")
+    @needs("mne", "tqdm")
     @unittest.skipUnless((BIN / "adaptiso-giant").exists(), "built without programs")
     def test_python(self):
         self.write_labels()
@@ -145,7 +146,6 @@ class Pages(InFolder):
         for name in ("head.stl", "hippocampus.stl", "walls.vtp", "brain.pvtp", "coarse.ply", "brain.ply"):
             self.assertTrue((self.folder / name).exists(), name)
 
-    @needs("nibabel")
     def test_the_first_example_prints_what_the_page_says(self):
         """Compares the line about ch2; ADAPTISO_RENEW_PAGES=1 writes the line anew instead."""
         page = ROOT / "Documentation" / "Python.md"
@@ -158,7 +158,7 @@ class Pages(InFolder):
         else:
             self.assertEqual(said, str(made["mesh"]))
 
-    @needs("nibabel", "vtkmodules")
+    @needs("vtkmodules")
     def test_readme(self):
         made = self.run_blocks(blocks_of("README.md"))
         self.assertEqual(made["polydata"].GetNumberOfCells(), len(made["mesh"].faces))

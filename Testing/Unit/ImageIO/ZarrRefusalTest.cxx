@@ -120,7 +120,7 @@ TEST_F(ZarrRefusalTest, ChunksThatAreElsewhereAreNamed) {
     for (const char* const codec : {"null", R"({"id": "zlib"})"}) {
         put(".zarray", metadata2(codec));
         for (const auto& [content, name] : stands) {
-            putChunks("", ".", [content = content](const Text&) { return Text(content); });
+            putChunks("", ".", [held = content](const Text&) { return Text(held); });
             expectRefused(name);
         }
     }
@@ -140,12 +140,13 @@ TEST_F(ZarrRefusalTest, DamagedChunksAndBombsAreRefused) {
     for (const auto& [codec, bomb] : bombs) {
         SCOPED_TRACE(codec);
         put(".zarray", metadata2(codec));
-        putChunks("", ".", [&bomb = bomb](const Text&) { return bomb; });
+        putChunks("", ".", [&chunk = bomb](const Text&) { return chunk; });
         expectRefused("data are damaged, or unpack to more than a chunk");
         putChunks("", ".",
                   [](const Text&) { return Text("\2\1\3\2rubbish that is none of them"); });
         expectRefused("data are damaged");
-        putChunks("", ".", [&bomb = bomb](const Text&) { return bomb.substr(0, bomb.size() / 2); });
+        putChunks("", ".",
+                  [&chunk = bomb](const Text&) { return chunk.substr(0, chunk.size() / 2); });
         expectRefused("damaged");
     }
     put(".zarray", metadata2("null"));

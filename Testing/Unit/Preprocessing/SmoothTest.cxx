@@ -97,15 +97,15 @@ TEST(Smooth, RaisesASphereOfLinearDepthByAsMuchAsOnPaper) {
         const auto view = smooth.view().as<float>();
         SCOPED_TRACE(name);
         int checked = 0;
-        // Clang 14 captures no part of a pair by its name
-        forEachVoxel(geometry, [&, &geometry = geometry](std::size_t n, const Vec3& point) {
+        const ImageGeometry& image = geometry;  // Clang 14 captures no part of a pair
+        forEachVoxel(geometry, [&](std::size_t n, const Vec3& point) {
             const double r = norm(point);
             if (r < 8 || r > 13) return;  // a margin of 5 mm to the centre and to the border
-            const Vec3 index = geometry.toIndex(point);
+            const Vec3 index = image.toIndex(point);
             for (int axis = 0; axis < 3; ++axis) {
                 const double left = index[axis],
-                             right = static_cast<double>(geometry.size[axis] - 1) - index[axis];
-                if (std::min(left, right) * geometry.spacingMm()[axis] < 5) return;
+                             right = static_cast<double>(image.size[axis] - 1) - index[axis];
+                if (std::min(left, right) * image.spacingMm()[axis] < 5) return;
             }
             // a discrete Gaussian of steps h has the fourth cumulant sigma^2 h^2, which adds
             // sigma^2 h^2 / 24 times the fourth derivative, 3 / r^3: 0.001 for h = 2, r = 8
@@ -125,15 +125,15 @@ TEST(Smooth, LeavesAConstantAndTheInsideOfARampAlone) {
         const Volume sloped = smoothVolume(sampledFrom<double>(geometry, ramp), 0.5);
         const auto view = sloped.view().as<double>();
         SCOPED_TRACE(name);
-        // Clang 14 captures no part of a pair by its name
-        forEachVoxel(geometry, [&, &geometry = geometry](std::size_t n, const Vec3& point) {
+        const ImageGeometry& image = geometry;  // Clang 14 captures no part of a pair
+        forEachVoxel(geometry, [&](std::size_t n, const Vec3& point) {
             EXPECT_NEAR(flat.view().as<float>().samples[n], -1024, 1e-3);  // rounding
-            const Vec3 index = geometry.toIndex(point);
+            const Vec3 index = image.toIndex(point);
             for (int axis = 0; axis < 3; ++axis) {
                 // ten sigma, and what diagonal steps add, from the border: 1e-8 of the weight
-                const double margin = 5 / geometry.spacingMm()[axis];
+                const double margin = 5 / image.spacingMm()[axis];
                 if (index[axis] < margin) return;
-                if (index[axis] > static_cast<double>(geometry.size[axis] - 1) - margin) return;
+                if (index[axis] > static_cast<double>(image.size[axis] - 1) - margin) return;
             }
             EXPECT_NEAR(view.samples[n], ramp(point), 1e-6);
         });

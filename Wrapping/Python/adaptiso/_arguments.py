@@ -7,6 +7,8 @@ import operator
 import os
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, TypeVar
 
+import numpy as np
+
 from ._adaptiso import Error
 
 Result = TypeVar("Result")
@@ -48,7 +50,7 @@ class Warned(str):
 def shown(value: Any) -> str:
     """`value` as a message has it: one short line."""
     try:
-        text = repr(value)
+        text = repr(value.item() if isinstance(value, np.generic) else value)  # NumPy 2: np.True_
     except Exception:
         text = f"<{type(value).__name__}>"
     text = " ".join(text.split())

@@ -70,7 +70,7 @@ def marching_cubes(volume: Any, level: Optional[float] = None, *, spacing: Any =
     >>> import adaptiso, numpy as np
     >>> i, j, k = np.indices((9, 9, 9)) - 4.0
     >>> verts, faces, normals, values = adaptiso.marching_cubes(i**2 + j**2 + k**2, 9.0)
-    >>> np.abs(np.linalg.norm(verts - 4, axis=1) - 3).max() < 0.1
+    >>> bool(np.abs(np.linalg.norm(verts - 4, axis=1) - 3).max() < 0.1)
     True
     """
     if method not in ("lewiner", "lorensen", "_lorensen"):

@@ -6,7 +6,7 @@ from typing import Any, Dict, List, Optional, Tuple, Union
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, Warned, aim, flag, number, progress as checked_progress,
+from ._arguments import (Progress, Warned, aim, flag, number, progress as checked_progress, shown,
                          smallest_angle, threads as checked_threads, word)
 from ._images import Samples, keep_read_only, prepared, read_only, samples_of
 from ._mesh import Mesh
@@ -162,7 +162,7 @@ def _options(level: Any, max_error: Any, triangles: Any, reduction: Any, min_ang
              progress: Any) -> Dict[str, Any]:
     """Arguments for C++. \\raises Error"""
     if isinstance(level, str) and level != "auto":
-        raise Error(f"level {level!r}: must be a number or 'auto'")
+        raise Error(f"level {shown(level)}: must be a number or 'auto'")
     return {
         "level": None if isinstance(level, str) else number("level", level, "a number or 'auto'"),
         **aim(max_error, triangles, reduction),
