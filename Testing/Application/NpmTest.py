@@ -48,7 +48,7 @@ LEFT_OUT = {
         "WarningsTest.Allowed.test_batches_hand_them_on", "WarningsTest.Batches"),
     "no MATLAB files": (
         "BemElectrodesTest.Electrodes.test_brainstorms_coordinates", "BemTest.Model.test_four_layers"),
-    "no ITK and oneTBB": ("CommandLineTest.Help.test_version_names_the_libraries",),
+    "no oneTBB": ("CommandLineTest.Help.test_version_names_the_library_of_threads",),
     "runs adaptiso-bids and adaptiso-giant too": (
         "CommandLineTest.Help.test_h_is_one_screen_with_every_option",
         "CommandLineTest.Help.test_readmes_name_the_options_of_every_program",
