@@ -23,6 +23,23 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
     list(APPEND ADAPTISO_WARNINGS -Wno-restrict)
 endif()
 
+# What keeps a damaged file from becoming more than a crash; the linker's part is where programs and
+# libraries are linked (-z relro -z now). Sanitizers watch over the same.
+set(ADAPTISO_HARDENING "")
+if(NOT EMSCRIPTEN AND NOT ADAPTISO_SANITIZE)
+    include(CheckCXXCompilerFlag)
+    foreach(flag -fstack-protector-strong -fstack-clash-protection -fcf-protection)
+        string(MAKE_C_IDENTIFIER ADAPTISO${flag} known)
+        check_cxx_compiler_flag(${flag} ${known})
+        if(${known})
+            list(APPEND ADAPTISO_HARDENING ${flag})
+        endif()
+    endforeach()
+    # needs an optimizing compiler
+    list(APPEND ADAPTISO_HARDENING
+         $<$<AND:$<NOT:$<CONFIG:Debug>>,$<NOT:$<BOOL:${ADAPTISO_COVERAGE}>>>:-D_FORTIFY_SOURCE=2>)
+endif()
+
 # find_package() with the arguments in one string, as adaptiso_module(PACKAGES) takes them.
 macro(adaptiso_find_package arguments)
     separate_arguments(_adaptiso_arguments UNIX_COMMAND "${arguments}")
@@ -35,7 +52,7 @@ function(adaptiso_compile_options target)
             ${PROJECT_SOURCE_DIR}/Applications/web/LibraryGaps.h <array> <cmath> <cstdint> <filesystem>
             <functional> <map> <optional> <sstream> <string> <vector>)
     endif()
-    target_compile_options(${target} PRIVATE ${ADAPTISO_WARNINGS}
+    target_compile_options(${target} PRIVATE ${ADAPTISO_WARNINGS} ${ADAPTISO_HARDENING}
                            $<$<BOOL:${ADAPTISO_WARNINGS_AS_ERRORS}>:-Werror>)
     if(ADAPTISO_SANITIZE)
         target_compile_definitions(${target} PRIVATE _GLIBCXX_ASSERTIONS)  # vectors' bounds
