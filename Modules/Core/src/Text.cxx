@@ -48,9 +48,51 @@ std::string printable(std::string_view text) {
     return "'" + visibleAscii(text.substr(0, kMost)) + (text.size() > kMost ? "...'" : "'");
 }
 
+namespace {
+
+/// Bytes of the UTF-8 character at `at`; 1 for a byte that begins none.
+std::size_t characterBytes(std::string_view text, std::size_t at) {
+    const auto c = static_cast<unsigned char>(text[at]);
+    const std::size_t bytes = c >= 0xf0 ? 4 : c >= 0xe0 ? 3 : c >= 0xc2 ? 2 : 1;
+    for (std::size_t n = 1; n < bytes; ++n) {
+        if (at + n == text.size() || (static_cast<unsigned char>(text[at + n]) & 0xc0) != 0x80) {
+            return 1;
+        }
+    }
+    return bytes;
+}
+
+/// Of a whole character, or of a byte that is none: as some terminals take Latin-1's.
+bool isControl(std::string_view character) {
+    const auto c = static_cast<unsigned char>(character[0]);
+    if (character.size() == 1) return c < 0x20 || (c >= 0x7f && c < 0xa0);
+    if (character.size() == 2) return c == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0;
+    const bool isLineOrEmbedding = character >= "\u2028" && character <= "\u202e";
+    const bool isIsolate = character >= "\u2066" && character <= "\u2069";
+    return character.size() == 3 && (isLineOrEmbedding || isIsolate);
+}
+
+}  // namespace
+
+std::string withoutControls(std::string_view text, std::string_view kept) {
+    std::string result;
+    result.reserve(text.size());
+    for (std::size_t at = 0, bytes = 0; at < text.size(); at += bytes) {
+        bytes = characterBytes(text, at);
+        const std::string_view character = text.substr(at, bytes);
+        const bool isKept = bytes == 1 && kept.find(character[0]) != std::string_view::npos;
+        if (isKept || !isControl(character)) {
+            result += character;
+        } else {
+            result += ' ';
+        }
+    }
+    return result;
+}
+
 std::string escapedMarkup(std::string_view text) {
     std::string result;
-    for (const char c : text) {
+    for (const char c : withoutControls(text)) {
         switch (c) {
             case '&':
                 result += "&amp;";
@@ -65,7 +107,7 @@ std::string escapedMarkup(std::string_view text) {
                 result += "&quot;";
                 break;
             default:
-                result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+                result += c;
         }
     }
     return result;

@@ -7,6 +7,7 @@
 
 #include "OpenMeegNames.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
@@ -131,9 +132,7 @@ std::string fileName(Lines& lines, const std::vector<std::string>& words) {
         lines.fail("must end with one file name in double quotes, without spaces");
     }
     std::string file = words[2].substr(1, words[2].size() - 2);
-    const fs::path path(file);
-    const bool climbs = std::find(path.begin(), path.end(), "..") != path.end();
-    if (path.is_absolute() || climbs || path.extension() != ".tri") {
+    if (!staysBelow(file) || fs::path(file).extension() != ".tri") {
         lines.fail("the file's name must be relative, below this folder, and end in .tri");
     }
     if (std::any_of(file.begin(), file.end(), isControl)) {
@@ -248,7 +247,9 @@ OpenMeegModel readOpenMeegModel(const fs::path& geometry, const fs::path& conduc
     }
     requireTwoSides(lines, model);
     for (OpenMeegModel::Interface& interface : model.interfaces) {
-        readInterfaceMesh(geometry.parent_path() / interface.file, interface.mesh);
+        const fs::path file = geometry.parent_path() / interface.file;
+        requireBeside(file, geometry);
+        readInterfaceMesh(file, interface.mesh);
     }
     Lines conductivityLines(conductivities);
     readConductivities(conductivityLines, model);

@@ -10,6 +10,7 @@
 #include "HeaderText.h"
 #include "Readers.h"
 #include "adaptiso/Core/ForeignContent.h"
+#include "adaptiso/Core/FoundFiles.h"
 
 namespace adaptiso::detail {
 
@@ -318,40 +319,9 @@ void checkTail(const DataPlace& place, const ByteTail& tail, const SampleLayout&
                                  : "")});
 }
 
-namespace fs = std::filesystem;
-
-namespace {
-
-/// Both without links and dots.
-bool isBelow(const fs::path& file, const fs::path& folder) {
-    const auto [inFolder, inFile] =
-        std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
-    return inFolder == folder.end() && inFile != file.end();
-}
-
-/// Nothing where it can't be resolved.
-fs::path resolved(const fs::path& path) {
-    std::error_code error;
-    fs::path real = fs::canonical(path, error);
-    return error ? fs::path() : real;
-}
-
-bool isInAnnexAbove(const fs::path& file, const fs::path& folder) {
-    for (fs::path above = folder; above.has_relative_path(); above = above.parent_path()) {
-        const fs::path objects = resolved(above / ".git" / "annex" / "objects");
-        if (!objects.empty() && isBelow(file, objects)) return true;
-    }
-    return false;
-}
-
-}  // namespace
-
 fs::path requireDataFile(const fs::path& headerFile, std::string_view name) {
     const fs::path relative(name);
-    const bool leaves =
-        relative.is_absolute() || std::any_of(relative.begin(), relative.end(),
-                                              [](const fs::path& part) { return part == ".."; });
-    if (leaves) {
+    if (!name.empty() && !staysBelow(relative)) {
         refuse(headerFile,
                fmt::format("names a data file outside its own folder ('{}')", printable(name)),
                "put the data file beside the header and name it there");
@@ -372,27 +342,11 @@ fs::path requireDataFile(const fs::path& headerFile, std::string_view name) {
 }
 
 void requireOwnFolder(const fs::path& headerFile, const fs::path& dataFile) {
-    const fs::path seen = headerFile.has_parent_path() ? headerFile.parent_path() : fs::path(".");
-    const fs::path data = resolved(dataFile), folder = resolved(seen);
-    const fs::path header = resolved(headerFile);
-    if (!data.empty() && !folder.empty() && !header.empty() &&
-        (isBelow(data, folder) || isBelow(data, header.parent_path()) ||
-         isInAnnexAbove(data, folder) || isInAnnexAbove(data, header.parent_path()))) {
-        return;
-    }
+    if (liesBeside(dataFile, headerFile)) return;
     refuse(headerFile,
            fmt::format("its data file '{}' is a link to outside the header's own folder",
                        printable(dataFile.filename().native())),
            "put the data file itself beside the header");
-}
-
-void requireInFolder(const fs::path& folder, const fs::path& dataFile) {
-    const fs::path data = resolved(dataFile), real = resolved(folder);
-    if (!data.empty() && !real.empty() && (isBelow(data, real) || isInAnnexAbove(data, real))) {
-        return;
-    }
-    refuse(dataFile, "is, or lies behind, a link to outside of its dataset's folder",
-           "put the file itself there");
 }
 
 }  // namespace adaptiso::detail

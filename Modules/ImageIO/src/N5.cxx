@@ -9,6 +9,7 @@
 #include "ZarrArray.h"
 #include "ZarrStore.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ParseJson.h"
 
 // N5's specification (its README, file format 2.5): dimensions from the fastest on, big-endian
 // samples, blocks with a header each. Here dimensions are turned into Zarr's order as soon as they
@@ -33,7 +34,7 @@ bool isArray(const ZarrJson& attributes) {
 /// Reads a file that may be another program's: only to recognise N5.
 ZarrJson looked(const ZarrStore& store, const std::string& path) {
     try {
-        return ZarrJson::parse(store.readText(attributesOf(path)).value_or(""), nullptr, false);
+        return parseJson<ZarrJson>(store.readText(attributesOf(path)).value_or(""));
     } catch (const FileError&) {
         return {};
     }

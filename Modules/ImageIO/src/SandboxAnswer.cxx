@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "Sandbox.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -33,11 +34,8 @@ std::optional<std::string> takeText(std::string_view& bytes) {
     std::memcpy(&length, bytes.data(), sizeof length);
     bytes.remove_prefix(sizeof length);
     if (length > bytes.size()) return std::nullopt;
-    std::string text(bytes.substr(0, length));
+    std::string text = withoutControls(bytes.substr(0, length));
     bytes.remove_prefix(length);
-    for (char& c : text) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    }
     return text;
 }
 

@@ -8,8 +8,9 @@
 #include <cerrno>
 #include <cstring>
 
-#include "DataPlace.h"
 #include "FileFault.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/ParseJson.h"
 
 namespace adaptiso::detail {
 
@@ -73,7 +74,7 @@ std::optional<ZarrFile> ZarrStore::open(const std::string& key) const {
             refuseForeignContent(path);
             refuse(path, "the link points to no existing file", "get the file it points to");
         }
-        if (isThere) requireInFolder(root_, path);
+        if (isThere) requireIn(path, root_);
     } else {
         flags |= O_NOFOLLOW;
     }
@@ -105,7 +106,7 @@ std::optional<ZarrJson> readZarrJson(const ZarrStore& store, const std::string& 
     const std::optional<std::string> text = store.readText(key);
     if (!text) return std::nullopt;
     // writers of Python put NaN into fill_value as a bare word, which JSON has not
-    ZarrJson json = ZarrJson::parse(*text, nullptr, false);
+    ZarrJson json = parseJson<ZarrJson>(*text);
     if (json.is_discarded() || !json.is_object()) {
         refuse(store.root() / key, "is damaged: it is no JSON object", "get the dataset again");
     }

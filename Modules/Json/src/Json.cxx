@@ -1,8 +1,15 @@
 #include "adaptiso/Json/Json.h"
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
+
+std::string jsonText(const Json& json, int indent) {
+    std::string text = json.dump(indent, ' ', false, Json::error_handler_t::replace);
+    if (withoutControls(text, "\n") == text) return text;
+    return json.dump(indent, ' ', true, Json::error_handler_t::replace);
+}
 
 std::string_view frameWord(CoordinateFrame frame) {
     constexpr const char* kWords[] = {"ras", "lps", "tkras", "voxel"};

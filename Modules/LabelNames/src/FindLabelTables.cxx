@@ -2,6 +2,7 @@
 #include <set>
 
 #include "Rows.h"
+#include "adaptiso/Core/FoundFiles.h"
 
 namespace adaptiso {
 namespace {
@@ -72,11 +73,11 @@ std::vector<fs::path> foldersOfDataset(const fs::path& image) {
 
 /// By BIDS's principle of inheritance: the nearest folder's, of several there the one with the most
 /// entities.
-std::vector<fs::path> inheritedTables(const fs::path& image) {
+std::vector<fs::path> inheritedTables(const fs::path& image, const std::vector<fs::path>& folders) {
     const std::vector<std::string> own = partsOf(stemOf(image.filename().string()));
     const std::set<std::string> entities(own.begin(), own.end());
     std::vector<fs::path> found;
-    for (const fs::path& folder : foldersOfDataset(image)) {
+    for (const fs::path& folder : folders) {
         std::vector<std::pair<std::size_t, fs::path>> here;
         std::error_code error;
         fs::directory_iterator entry(folder, error);
@@ -134,7 +135,9 @@ FoundLabelTables findLabelTables(const fs::path& image, std::int64_t volume) {
     FoundLabelTables found;
     std::vector<Warning> warnings;
     std::vector<fs::path> candidates = ownNames(image);
-    for (fs::path& path : inheritedTables(image)) candidates.push_back(std::move(path));
+    const std::vector<fs::path> folders = foldersOfDataset(image);
+    const fs::path root = folders.empty() ? image.parent_path() : folders.back();
+    for (fs::path& path : inheritedTables(image, folders)) candidates.push_back(std::move(path));
     candidates.push_back(image);
     for (const fs::path& path : candidates) {
         std::error_code error;
@@ -142,6 +145,7 @@ FoundLabelTables findLabelTables(const fs::path& image, std::int64_t volume) {
         if (!fs::is_regular_file(path, error) || (!isInside && fs::equivalent(path, image, error)))
             continue;
         try {
+            if (!isInside && !liesBeside(path, image)) requireIn(path, root);
             LabelTable table = isInside ? readEmbeddedTable(image, volume) : readLabelTable(path);
             if (table.entries.empty()) continue;
             const bool isUseful = hasNames(table)

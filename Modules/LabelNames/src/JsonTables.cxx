@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "Rows.h"
+#include "adaptiso/Core/ParseJson.h"
 
 namespace adaptiso::labelnames {
 namespace {
@@ -19,12 +20,13 @@ const Json* member(const Json& object, std::initializer_list<const char*> names)
 }
 
 std::int32_t keyOf(const Json& json) {
-    const std::optional<std::int64_t> value =
-        wholeNumber(json.is_string() ? json.get<std::string>() : json.dump());
+    const std::string text = json.is_string()       ? json.get<std::string>()
+                             : json.is_structured() ? "a list"
+                                                    : json.dump();
+    const std::optional<std::int64_t> value = wholeNumber(text);
     constexpr std::int64_t kMost = (std::int64_t{1} << 31) - 1;
     if (!value || *value < -kMost || *value > kMost) {
-        damaged("an index is " + printable(json.is_structured() ? "a list" : json.dump()) +
-                ", must be a whole number that 32 bits hold");
+        damaged("an index is " + printable(text) + ", must be a whole number that 32 bits hold");
     }
     return static_cast<std::int32_t>(*value);
 }
@@ -164,7 +166,7 @@ bool isByValue(const Json& object) {
 }  // namespace
 
 LabelTable decodeJson(std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parseJson<Json>(text);
     if (json.is_discarded()) refuseKind("its JSON is damaged");
     if (json.is_array() && !json.empty()) return decodeList(json);
     if (json.is_object()) {

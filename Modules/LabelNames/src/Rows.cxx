@@ -6,27 +6,6 @@
 #include <limits>
 
 namespace adaptiso::labelnames {
-namespace {
-
-bool isControl(char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-}
-
-/// Also the two-byte controls of UTF-8, which some terminals obey.
-std::string cleaned(std::string_view text) {
-    std::string result;
-    for (std::size_t n = 0; n < text.size(); ++n) {
-        const auto c = static_cast<unsigned char>(text[n]);
-        const bool isTwoByteControl =
-            c == 0xc2 && n + 1 < text.size() && static_cast<unsigned char>(text[n + 1]) < 0xa0;
-        if (isTwoByteControl) ++n;
-        result += isTwoByteControl || isControl(text[n]) ? ' ' : text[n];
-    }
-    return std::string(trimmed(result));
-}
-
-}  // namespace
-
 void damaged(const std::string& what) {
     throw FileError(what + "; the table is damaged: mend or replace it");
 }
@@ -108,8 +87,8 @@ std::optional<LabelColor> parseHex(std::string_view text) {
 }
 
 void Collector::add(LabelEntry entry) {
-    entry.name = cleaned(entry.name);
-    entry.abbreviation = cleaned(entry.abbreviation);
+    entry.name = std::string(trimmed(withoutControls(entry.name)));
+    entry.abbreviation = std::string(trimmed(withoutControls(entry.abbreviation)));
     constexpr std::size_t kLongest = 4096;
     if (std::max(entry.name.size(), entry.abbreviation.size()) > kLongest) {
         damaged("the name of label " + std::to_string(entry.value) + " is longer than " +

@@ -9,6 +9,8 @@
 #include "Bytes.h"
 #include "Fiff.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/ParseJson.h"
 
 namespace adaptiso {
 
@@ -95,7 +97,7 @@ Vec3 vectorOf(const Json& value) {
 
 /// Adds unit, frame and landmarks from _coordsystem.json.
 void applyCoordinateSystem(const std::string& text, PointFile& file) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parseJson<Json>(text);
     if (!json.is_object()) damaged("its coordinate system (_coordsystem.json) is no JSON object");
     file.frameName = textOf(json, "EEGCoordinateSystem");
     file.frame = bidsFrame(file.frameName);
@@ -304,7 +306,9 @@ std::optional<std::string> coordinateSystemBeside(const std::filesystem::path& t
     }
     std::error_code error;
     for (const fs::path& path : tried) {
-        if (fs::is_regular_file(path, error)) return readBytes(path);
+        if (!fs::is_regular_file(path, error)) continue;
+        requireBeside(path, tsv);
+        return readBytes(path);
     }
     return std::nullopt;
 }

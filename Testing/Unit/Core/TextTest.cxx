@@ -38,4 +38,30 @@ TEST(Utf8, IsWhatItsStandardAllows) {  // RFC 3629, section 4
               "Größe");
 }
 
+TEST(Text, ControlsBecomeBlanks) {
+    EXPECT_EQ(withoutControls("a\x1b]0;evil\x07.nii"), "a ]0;evil .nii");
+    EXPECT_EQ(withoutControls("a\x7f\tb\n"), "a  b ");
+    EXPECT_EQ(withoutControls("a\tb\n", "\n\t"), "a\tb\n");
+    EXPECT_EQ(withoutControls("\u009b2J"), " 2J");  // CSI in UTF-8
+    EXPECT_EQ(withoutControls("\x9b"
+                              "2J"),
+              " 2J");                                                 // and in Latin-1
+    EXPECT_EQ(withoutControls("scan\u202eiin.gpj"), "scan iin.gpj");  // right-to-left override
+    for (const char* one : {"\u2028", "\u2029", "\u202a", "\u202d", "\u2066", "\u2069", "\u0085"}) {
+        EXPECT_EQ(withoutControls(one), " ");
+    }
+}
+
+TEST(Text, WritingOfAllKindsStays) {
+    for (const char* one : {"Hirn", "M\u00fcller", "\u8111.nii", "\U0001F9E0", "\u05de\u05d5\u05d7",
+                            "\u200e", "\u2027\u202f\u2065\u206a", "M\xfcller"}) {
+        EXPECT_EQ(withoutControls(one), one);
+    }
+    EXPECT_EQ(withoutControls("\xe2\x80"), "\xe2 ");  // cut off
+}
+
+TEST(Text, MarkupHasNoControlsEither) {
+    EXPECT_EQ(escapedMarkup("<\u202e>\x1b"), "&lt; &gt; ");
+}
+
 }  // namespace adaptiso::testing

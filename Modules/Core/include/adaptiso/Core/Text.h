@@ -23,7 +23,13 @@ std::string visibleAscii(std::string_view text);
 /// visibleAscii() in quotes, cut at 40 characters: for messages.
 std::string printable(std::string_view text);
 
-/// `text` escaped for HTML and XML, between tags and in quotes; control characters become blanks.
+/// `text` with a blank for every character that could steer a terminal or reorder what it shows:
+/// controls (C0, DEL, C1), separators of lines and the embeddings, overrides and isolates of
+/// bidirectional text. All that outsiders named passes through here on its way to a person.
+/// \param kept  controls that stay, such as "\n"
+std::string withoutControls(std::string_view text, std::string_view kept = {});
+
+/// `text` escaped for HTML and XML, between tags and in quotes, withoutControls().
 std::string escapedMarkup(std::string_view text);
 
 /// Base64 with padding, in one line (RFC 4648).

@@ -31,10 +31,9 @@ Json orNull(const std::optional<T>& value) {
 }
 
 /// `json` as a file has it; on one line where `indent` is -1. What is not UTF-8, as names of files
-/// need not be, becomes U+FFFD.
-inline std::string jsonText(const Json& json, int indent = 2) {
-    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
+/// need not be, becomes U+FFFD. Characters that withoutControls() leaves out are escaped, and with
+/// them all that are not ASCII.
+std::string jsonText(const Json& json, int indent = 2);
 
 /// {code, file, text}; `file` is null where the warning names none.
 inline void to_json(Json& json, const Warning& warning) {
