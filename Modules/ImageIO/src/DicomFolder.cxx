@@ -14,6 +14,8 @@
 #include "Readers.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/Shortage.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -175,6 +177,8 @@ private:
             return;
         }
         requireRegularFile(entry);
+        std::error_code ignored;
+        if (fs::is_symlink(entry, ignored)) requireIn(entry, folder_);
         const std::string head = readHead(entry, kMagicEnd);
         if (looksLikeDicom(head)) {
             dicomFiles_.push_back(entry);
@@ -222,7 +226,7 @@ private:
             if (!foreign || foreign->kind == ForeignKind::StandIn) continue;
             refuse(folder_,
                    fmt::format("no DICOM file found in this folder: {} {}",
-                               displayName(file.filename()), foreign->fault),
+                               fileNumber(file, folder_), foreign->fault),
                    foreign->remedy);
         }
     }
@@ -366,9 +370,23 @@ std::vector<fs::path> referencedFiles(const fs::path& directory, const DicomHead
                                printable(*id)),
                    "copy all files of the medium, or give the folder that holds the slices");
         }
+        requireBeside(path, directory);
         paths.insert(path);
     }
     return {paths.begin(), paths.end()};
+}
+
+/// All files in and under a folder, which may be "" for this one.
+std::vector<fs::path> filesBelow(const fs::path& folder) {
+    std::error_code error, ignored;
+    std::vector<fs::path> files;
+    fs::recursive_directory_iterator entry(folder.empty() ? fs::path(".") : folder, error);
+    for (const fs::recursive_directory_iterator end; !error && entry != end;
+         entry.increment(error)) {
+        if (entry->is_directory(ignored)) continue;
+        files.push_back(folder.empty() ? entry->path().lexically_normal() : entry->path());
+    }
+    return files;
 }
 
 }  // namespace
@@ -378,6 +396,32 @@ bool isGzippedDicom(const fs::path& file) {
     head.resize(
         ByteSource(file, 0, ByteSource::Encoding::Deflate).readSome(head.data(), head.size()));
     return looksLikeDicom(head);
+}
+
+std::string fileNumber(const fs::path& file, const fs::path& folder) {
+    const std::vector<fs::path> files = filesBelow(folder);
+    const auto before = std::ranges::count_if(files, [&](const auto& each) { return each < file; });
+    return fmt::format("file {} (by name)", before + 1);
+}
+
+ReadVolume numberingFiles(const fs::path& input, const fs::path& folder,
+                          const std::function<ReadVolume()>& read) {
+    const auto numbered = [&](const std::string& message) {
+        for (const fs::path& file : filesBelow(folder)) {
+            const std::string name = displayName(file);
+            if (!message.starts_with(name + ": ") && !message.starts_with(name + " (")) continue;
+            return displayName(input) + ": " + fileNumber(file, folder) +
+                   message.substr(name.size());
+        }
+        return message;
+    };
+    try {
+        return read();
+    } catch (const Shortage& error) {
+        throw Shortage(numbered(error.what()));
+    } catch (const FileError& error) {
+        throw FileError(numbered(error.what()));
+    }
 }
 
 std::string withoutName(const std::string& message, const fs::path& file) {

@@ -21,7 +21,8 @@ namespace {
 constexpr double kSameDirection = 1e-4;  // 0.025 mm across a 250 mm field of view
 
 bool isSame(const std::optional<double>& a, const std::optional<double>& b) {
-    return a.has_value() == b.has_value() && (!a || std::abs(*a - *b) <= kSameDirection * *a);
+    return a.has_value() == b.has_value() &&
+           (!a || std::abs(*a - *b) <= kSameDirection * std::abs(*a));
 }
 
 bool isSame(const std::optional<Vec3>& a, const std::optional<Vec3>& b) {

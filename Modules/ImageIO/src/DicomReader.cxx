@@ -13,6 +13,7 @@
 #include "Samples.h"
 #include "Sandbox.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 
 // A classic series (a file a slice), an enhanced multi-frame file and a mosaic are one thing here:
@@ -33,7 +34,8 @@ constexpr const char* kRepeated =
     const auto repeated =
         std::ranges::find_if(places, [](const auto& place) { return place.size() > 1; });
     const auto nameOf = [&](std::size_t n) {
-        return displayName(files[group.planes[n].file].path.filename());
+        const fs::path& file = files[group.planes[n].file].path;
+        return fileNumber(file, fs::is_directory(input) ? input : input.parent_path());
     };
     const auto count = std::ranges::count_if(places, [](const auto& p) { return p.size() > 1; });
     refuse(input,
@@ -163,11 +165,17 @@ DicomListing listImages(const fs::path& input, const DicomInput& images) {
 }  // namespace
 
 ReadVolume readDicomFile(const fs::path& file, const ReadOptions& options) {
-    return readImages(file, readDicomFileHeaders(file, DamagedFiles::Refuse, false), options);
+    const auto read = [&] {
+        return readImages(file, readDicomFileHeaders(file, DamagedFiles::Refuse, false), options);
+    };
+    const bool isDirectory = lowerCase(file.filename().string()).starts_with("dicomdir");
+    return isDirectory ? numberingFiles(file, file.parent_path(), read) : read();
 }
 
 ReadVolume readDicomFolder(const fs::path& folder, const ReadOptions& options) {
-    return readImages(folder, readDicomHeaders(folder, DamagedFiles::Refuse, false), options);
+    return numberingFiles(folder, folder, [&] {
+        return readImages(folder, readDicomHeaders(folder, DamagedFiles::Refuse, false), options);
+    });
 }
 
 }  // namespace adaptiso::detail

@@ -13,51 +13,58 @@
 #ifndef ADAPTISO_LIBRARY_FOLDER  // below the prefix; fuzzers have none
 #define ADAPTISO_LIBRARY_FOLDER "lib"
 #endif
+#ifndef ADAPTISO_PYTHON_FOLDER
+#define ADAPTISO_PYTHON_FOLDER "python"
+#endif
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
 
 namespace {
 
-/// The library beside the program or Python module that this code is in: in lib/adaptiso/itk of a
-/// folder above. Null where it is not installed.
-ItkReader loadItkReader() {
+/// `folder` without `end`; empty if it does not end so.
+fs::path prefixOf(fs::path folder, const fs::path& end) {
+    for (auto part = end.end(); part != end.begin(); folder = folder.parent_path()) {
+        if (folder.filename() != *--part) return {};
+    }
+    return folder;
+}
+
+/// The library where it is installed with the program or Python module that this code is in, and
+/// nowhere else: a library in another folder may be anybody's. Empty where it is not installed.
+fs::path itkLibrary() {
     Dl_info own{};
     std::error_code error;
-    std::vector<fs::path> places{fs::read_symlink("/proc/self/exe", error)};
-    if (dladdr(reinterpret_cast<const void*>(&loadItkReader), &own) != 0) {
-        places.push_back(fs::canonical(own.dli_fname, error));
+    std::vector<fs::path> files{fs::read_symlink("/proc/self/exe", error)};
+    if (dladdr(reinterpret_cast<const void*>(&itkLibrary), &own) != 0) {
+        files.push_back(fs::canonical(own.dli_fname, error));
     }
-    for (fs::path place : places) {
-        for (int level = 0; level < 5 && place.has_relative_path(); ++level) {
-            place = place.parent_path();
+    for (const fs::path& file : files) {
+        for (const char* end : {"bin", ADAPTISO_PYTHON_FOLDER "/adaptiso", "python/adaptiso"}) {
+            const fs::path prefix = prefixOf(file.parent_path(), end);
             for (const char* folder : {"lib", ADAPTISO_LIBRARY_FOLDER}) {
-                const fs::path file = place / folder / "adaptiso/itk/libadaptisoItkIO.so";
-                if (!fs::exists(file, error)) continue;
-                void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-                if (library == nullptr) continue;
-                return reinterpret_cast<ItkReader>(dlsym(library, kItkReaderName));
+                fs::path library = prefix / folder / "adaptiso/itk/libadaptisoItkIO.so";
+                if (!prefix.empty() && fs::exists(library, error)) return library;
             }
         }
     }
-    return nullptr;
+    return {};
 }
 
-/// Loaded here, since a forked child should not.
-ItkReader itkReader() {
-    static const ItkReader reader = loadItkReader();
-    return reader;
+ItkReader loadItkReader() {
+    void* const library = dlopen(itkLibrary().c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) return nullptr;
+    return reinterpret_cast<ItkReader>(dlsym(library, kItkReaderName));
 }
 
 }  // namespace
 
 bool hasItkReaders() {
-    return itkReader() != nullptr;
+    return !itkLibrary().empty();
 }
 
 std::optional<ReadVolume> readWithItk(const fs::path& input, const ReadOptions& options) {
-    const ItkReader reader = itkReader();
-    if (reader == nullptr) return std::nullopt;
+    if (!hasItkReaders()) return std::nullopt;
     const auto allocate = [&](const ImageGeometry& geometry, PixelType type) {
         requireUsableGeometry(input, geometry);
         return allocateSamples(input, requireImageBytes(input, geometry.size, type));
@@ -65,7 +72,8 @@ std::optional<ReadVolume> readWithItk(const fs::path& input, const ReadOptions& 
     const auto choose = [&](std::int64_t count) { return chooseVolume(input, count, options); };
     const auto read = [&] {
         std::optional<ReadVolume> result;
-        reader({input, allocate, choose}, result);
+        const ItkReader reader = loadItkReader();
+        if (reader != nullptr) reader({input, allocate, choose}, result);
         if (!result) throw InvalidInput("");
         return std::move(*result);
     };

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <optional>
 #include <span>
 #include <string>
@@ -102,22 +103,40 @@ private:
                 "free memory or processes");
 }
 
-/// Reads the pipe until the child closes it. \return false at the deadline
-bool collect(int pipe, Clock::time_point deadline, std::string& answer) {
+/// Of a child that runs; 0 where it can't be had.
+std::chrono::milliseconds processorTime(pid_t process) {
+    clockid_t clock{};
+    timespec used{};
+    if (::clock_getcpuclockid(process, &clock) != 0 || ::clock_gettime(clock, &used) != 0)
+        return {};
+    return std::chrono::seconds(used.tv_sec) +
+           std::chrono::duration_cast<std::chrono::milliseconds>(
+               std::chrono::nanoseconds(used.tv_nsec));
+}
+
+/// Reads the pipe until the child closes it.
+/// \return the limit that was exceeded before, in words; may be empty
+std::string collect(int pipe, pid_t child, std::chrono::milliseconds limit, std::string& answer) {
+    constexpr int kFar = 10;
+    const Clock::time_point begin = Clock::now();
+    const auto inSeconds = [](std::chrono::milliseconds time) {
+        return std::chrono::duration_cast<std::chrono::seconds>(time).count();
+    };
     std::vector<char> piece(std::size_t{1} << 16);
     for (;;) {
-        const auto left =
-            std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-        if (left <= 0) return false;
+        const std::chrono::milliseconds left = limit - processorTime(child);
+        if (left.count() <= 0) return fmt::format("{} s of processor time", inSeconds(limit));
+        if (Clock::now() - begin > kFar * limit)
+            return fmt::format("{} s", inSeconds(kFar * limit));
         pollfd ready{pipe, POLLIN, 0};
-        const int found =
-            ::poll(&ready, 1, static_cast<int>(std::min<std::int64_t>(left, 1'000'000)));
+        const int found = ::poll(
+            &ready, 1, static_cast<int>(std::clamp<std::int64_t>(left.count(), 1, 1'000'000)));
         if (found == 0 || (found < 0 && errno == EINTR)) continue;
         const ssize_t got = ::read(pipe, piece.data(), piece.size());
         if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) return true;
+        if (got <= 0) return {};
         answer.append(piece.data(), static_cast<std::size_t>(got));
-        if (answer.size() > kLongestAnswer) return true;
+        if (answer.size() > kLongestAnswer) return {};
     }
 }
 
@@ -240,7 +259,6 @@ ReadVolume readInSandbox(const fs::path& input, const SandboxLimits& limits,
     const BlameNote blame;
     if (!blame.isUsable()) refuseStart(input);
 
-    const Clock::time_point deadline = Clock::now() + limits.time;
     const pid_t pid = forkSandboxChild(
         {childsEnd.number(), memory.number(), blame.bytes(), limits.memoryBytes}, read);
     if (pid < 0) refuseStart(input);
@@ -248,14 +266,12 @@ ReadVolume readInSandbox(const fs::path& input, const SandboxLimits& limits,
     childsEnd.close();
 
     std::string bytes;
-    const bool isInTime = collect(answerEnd.number(), deadline, bytes);
+    const std::string exceeded = collect(answerEnd.number(), pid, limits.time, bytes);
     const int status = child.end();
     const fs::path blamed = blame.fileOr(input);
-    if (!isInTime) {
-        refuse(blamed,
-               fmt::format("its decoding was stopped after {} s without an end",
-                           std::chrono::duration_cast<std::chrono::seconds>(limits.time).count()),
-               "the file is damaged, or the disk or machine too slow");
+    if (!exceeded.empty()) {
+        refuse(blamed, fmt::format("its decoding was stopped after {} without an end", exceeded),
+               "the file is damaged, or its disk does not answer");
     }
     if (bytes.empty()) refuseSilence(blamed, status);
     std::optional<SandboxAnswer> answer = parseSandboxAnswer(bytes);

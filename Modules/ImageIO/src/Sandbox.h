@@ -24,8 +24,10 @@
 namespace adaptiso::detail {
 
 struct SandboxLimits {
-    std::chrono::milliseconds time;  ///< of the wall clock, from start to answer
-    std::uint64_t memoryBytes;       ///< heap and stack above what the parent has; samples apart
+    /// Processor time until the answer, so that a busy machine changes nothing; ten times that by
+    /// the clock, for what waits.
+    std::chrono::milliseconds time;
+    std::uint64_t memoryBytes;  ///< heap and stack above what the parent has; samples apart
 };
 
 /// Generous for what honest files take: 15 s and 1 s for each MB of input; 1 GiB and 64 bytes for

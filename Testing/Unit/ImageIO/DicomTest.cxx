@@ -206,6 +206,7 @@ TEST(DicomHeaders, RefusesWhatCantBePlacedOrUnderstood) {
     refused([](DicomSlice& s) { s.pixelSpacing = ""; }, "PixelSpacing");
     refused([](DicomSlice& s) { s.pixelSpacing = "1"; }, "PixelSpacing");
     refused([](DicomSlice& s) { s.pixelSpacing = "0\\1"; }, "PixelSpacing");
+    refused([](DicomSlice& s) { s.pixelSpacing = "-1\\-1"; }, "PixelSpacing of 0 or less");
     refused([](DicomSlice& s) { s.photometric = "RGB"; }, "colour");
     refused([](DicomSlice& s) { s.photometric = "PALETTE COLOR"; }, "colour");
     refused([](DicomSlice& s) { s.rescaleSlope = "0"; }, "RescaleSlope is 0");

@@ -21,7 +21,7 @@ struct ItkRequest {
 };
 
 /// Function of libadaptisoItkIO.so for readVolume(): ITK's readers of other formats. It is loaded
-/// when such a file is met, and runs in the sandbox process.
+/// by the sandbox process for such a file, and runs there.
 /// `result` stays empty where no reader takes the file. \throws FileError
 using ItkReader = void (*)(const ItkRequest& request, std::optional<ReadVolume>& result);
 inline constexpr const char* kItkReaderName = "adaptisoReadWithItk";
