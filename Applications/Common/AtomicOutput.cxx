@@ -6,13 +6,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 
+#include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Shortage.h"
 
 namespace adaptiso {
@@ -49,6 +52,22 @@ void requireDone(bool isDone, const fs::path& target, const char* fault = "can't
 
 std::string prefixOf(int process) {
     return ".adaptiso-" + std::to_string(process) + "-";
+}
+
+/// True for the names that newName() makes: ".adaptiso-12-0.part.vtp".
+bool isOwnName(std::string_view name) {
+    const auto take = [&name](std::string_view text) {
+        if (!name.starts_with(text)) return false;
+        name.remove_prefix(text.size());
+        return true;
+    };
+    const auto takeDigits = [&name] {
+        const std::size_t count = std::min(name.find_first_not_of("0123456789"), name.size());
+        name.remove_prefix(count);
+        return count > 0;
+    };
+    return take(".adaptiso-") && takeDigits() && take("-") && takeDigits() && take(".part") &&
+           (name.empty() || name.rfind('.') == 0);
 }
 
 /// ".adaptiso-<process>-<n>.part<extension>" beside `final`.
@@ -134,7 +153,9 @@ void keepAttributes(const fs::path& final, const fs::path& temporary) {
     constexpr auto kSame = static_cast<uid_t>(-1);
     const bool keepsGroup = chown(temporary.c_str(), old.st_uid, old.st_gid) == 0 ||
                             chown(temporary.c_str(), kSame, old.st_gid) == 0;
-    (void)!chmod(temporary.c_str(), old.st_mode & (keepsGroup ? 03777U : 0707U));
+    // a folder passes on who inherits its group and who may remove from it; a file no such rights
+    const mode_t all = S_ISDIR(old.st_mode) ? 03777U : 0777U;
+    (void)!chmod(temporary.c_str(), old.st_mode & (keepsGroup ? all : 0707U));
 }
 
 /// \param sync  fsync(), or syncfs() for the whole file system
@@ -200,13 +221,15 @@ void renameTo(const fs::path& temporary, const fs::path& final, const fs::path& 
 
 }  // namespace
 
-void makeFolders(const fs::path& folder) {
+void makeFolders(const fs::path& folder, const fs::path& ownFolder) {
+    if (!ownFolder.empty()) requireNoLink(folder, ownFolder);
     std::error_code error;
     fs::create_directories(folder, error);
     require(!error, folder, "the folder can't be made (" + error.message() + "); choose another");
 }
 
-void checkOutput(const fs::path& target) {
+void checkOutput(const fs::path& target, const fs::path& ownFolder) {
+    if (!ownFolder.empty()) requireNoLink(target, ownFolder);
     const fs::path file = resolved(target);
     requireFolder(target, folderOf(file));
     std::error_code error;
@@ -263,7 +286,7 @@ void removeLeftTemporaries(const fs::path& folder, int process) {
     std::error_code error, ignored;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
         const std::string name = entry.path().filename().string();
-        if (!name.starts_with(".adaptiso-") || name.find(".part") == std::string::npos) continue;
+        if (!isOwnName(name)) continue;
         const int lock = openLocked(entry.path());
         if (lock < 0 && errno == EWOULDBLOCK) continue;
         const auto written = entry.last_write_time(error);
@@ -298,8 +321,9 @@ std::string reason() {
 
 }  // namespace detail
 
-AtomicOutput::AtomicOutput(const fs::path& target) : target_(target), final_(resolved(target)) {
-    checkOutput(target);
+AtomicOutput::AtomicOutput(const fs::path& target, const fs::path& ownFolder)
+    : target_(target), ownFolder_(ownFolder), final_(resolved(target)) {
+    checkOutput(target, ownFolder);
     record_ = makeTemporary(final_, false, target_);
     temporary_ = record_->path;
 }
@@ -319,7 +343,7 @@ void AtomicOutput::writeBytes(std::span<const std::byte> bytes) {
 
 void AtomicOutput::check(std::span<const AtomicOutput> outputs) {
     for (const AtomicOutput& output : outputs) {
-        checkOutput(output.target_);
+        checkOutput(output.target_, output.ownFolder_);
         require(fs::exists(output.temporary_), output.target_, "its temporary file is gone");
     }
 }

@@ -22,9 +22,13 @@ struct Temporary;
 /// its owner and group where permitted.
 class AtomicOutput {
 public:
-    /// Makes the temporary file. A symbolic link as target is followed, so that the link stays.
+    /// Makes the temporary file. A symbolic link as target is followed, so that the link stays,
+    /// but only where the user named it.
+    /// \param ownFolder  where the program chose the name: the folder above it that the user named,
+    ///                   below which links are refused; empty: the user named `target`
     /// \throws FileError  as checkOutput(), or the file can't be made
-    explicit AtomicOutput(const std::filesystem::path& target);
+    explicit AtomicOutput(const std::filesystem::path& target,
+                          const std::filesystem::path& ownFolder = {});
     AtomicOutput(AtomicOutput&&) = default;
 
     const std::filesystem::path& target() const { return target_; }
@@ -48,7 +52,8 @@ public:
     static void check(std::span<const AtomicOutput> outputs);
 
 private:
-    std::filesystem::path target_, final_;  ///< final_: with a symbolic link resolved
+    std::filesystem::path target_, ownFolder_;
+    std::filesystem::path final_;  ///< with a symbolic link resolved
     std::filesystem::path temporary_;
     std::shared_ptr<detail::Temporary> record_;
 };
@@ -105,12 +110,14 @@ private:
 
 /// Throws when `target` can't become a regular file: its folder is missing or may not be written,
 /// or the name is that of a folder, a device or a write-protected file. Changes nothing.
-/// \throws FileError
-void checkOutput(const std::filesystem::path& target);
+/// \param ownFolder  as AtomicOutput takes it \throws FileError
+void checkOutput(const std::filesystem::path& target, const std::filesystem::path& ownFolder = {});
 
 /// Makes a folder and its missing parents.
+/// \param ownFolder  the folder above it that the user named, below which links are refused; empty:
+///                   the user named `folder`
 /// \throws FileError  it can't be made
-void makeFolders(const std::filesystem::path& folder);
+void makeFolders(const std::filesystem::path& folder, const std::filesystem::path& ownFolder = {});
 
 /// Throws when writing `target` would overwrite `input`. \throws FileError
 void checkNotInput(const std::filesystem::path& target, const std::filesystem::path& input);
@@ -129,8 +136,9 @@ std::shared_ptr<Temporary> removedAtEnd(const std::filesystem::path& path, int l
 /// Removes all temporaries, before the program ends at once. Async-signal-safe.
 void removeTemporaries();
 
-/// Removes from `folder` the temporaries of killed processes: those of `process`, those that no
-/// process has locked and, where the file system has no locks, those not written to for a day.
+/// Removes from `folder` the temporaries (by their exact form of names) of killed processes: those
+/// of `process`, those that no process has locked and, where the file system has no locks, those
+/// not written to for a day.
 void removeLeftTemporaries(const std::filesystem::path& folder, int process);
 
 /// A child process that writes temporaries and so is ended before they are removed; 0 for none.

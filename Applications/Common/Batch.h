@@ -82,8 +82,10 @@ EarlierRun findEarlierRun(const BatchProgram& program, const PlannedRun& run,
 
 /// Settings and callbacks of runRuns().
 struct BatchRunning {
-    std::filesystem::path folder;      ///< that the batch writes to; may be empty
-    std::filesystem::path summary{};   ///< a page to write; may be empty
+    std::filesystem::path folder;     ///< that the batch writes to; may be empty
+    std::filesystem::path summary{};  ///< a page to write; may be empty
+    /// For the page, as AtomicOutput takes it.
+    std::filesystem::path summaryFolder{};
     std::string* jsonLines = nullptr;  ///< takes the lines of --json FILE
 };
 

@@ -12,6 +12,7 @@
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
+#include "adaptiso/Core/FoundFiles.h"
 
 namespace adaptiso {
 namespace {
@@ -83,6 +84,8 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
     for (const std::string& option : batch.runOptions) {
         const auto [name, value] = split(option);
         if (!isIn(program.outputOptions, name)) continue;
+        require(name != kOutput || batch.outputFolder.empty() || staysBelow(value),
+                name + " " + value + ": must be a name below --output-dir");
         require(holdsName(value),
                 name + " " + value +
                     ": needs {name} in it, or the runs for all inputs would write the same");
@@ -194,10 +197,11 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
     if (!running.folder.empty()) makeFolders(running.folder);
     if (running.summary.empty() && !running.folder.empty()) {
         running.summary = running.folder / "summary.html";
+        running.summaryFolder = running.folder;
     }
     for (const fs::path& file : {running.summary, fs::path(common.json)}) {
         if (file.empty() || file == "-") continue;
-        checkOutput(file);
+        checkOutput(file, file == running.summary ? running.summaryFolder : fs::path());
         for (const PlannedRun& run : runs) {
             for (const fs::path& input : run.item.inputs) checkNotInput(file, input);
         }

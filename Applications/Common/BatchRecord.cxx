@@ -13,14 +13,14 @@
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kRecordSchema = "adaptiso-record/1";
 
 bool isHidden(const fs::path& path) {
     const std::string name = path.filename().native();
@@ -39,7 +39,8 @@ std::vector<fs::path> filesIn(const fs::path& folder, const fs::path& output, bo
             const bool isOutput =
                 !excluded.empty() && fs::weakly_canonical(path, ignored) == excluded;
             if (!isDeep || isOutput || isHidden(path)) entry.disable_recursion_pending();
-        } else if (entry->is_regular_file(ignored) && !isHidden(path)) {
+        } else if (entry->is_regular_file(ignored) && !isHidden(path) &&
+                   (!entry->is_symlink(ignored) || liesIn(path, folder))) {
             files.push_back(path);
         }
     }
@@ -86,9 +87,12 @@ std::vector<fs::path> belongingTo(const fs::path& input, const fs::path& output)
         return files;
     }
     const std::string data = dataFileOf(input);
-    if (data.empty() || data == "LOCAL") return {};
+    if (!staysBelow(data) || data == "LOCAL") return {};
     std::error_code error;
-    if (fs::is_regular_file(folder / data, error)) return {folder / data};
+    if (fs::is_regular_file(folder / data, error)) {
+        if (!liesBeside(folder / data, input)) return {};  // which reading refuses
+        return {folder / data};
+    }
     return filesIn(folder, output, true);  // a list or a pattern of files
 }
 
@@ -118,44 +122,6 @@ Json toJson(const RecordedFile& file) {
     if (!file.option.empty()) json["option"] = file.option;
     if (!file.place.empty()) json["place"] = file.place;
     return json;
-}
-
-std::vector<RecordedFile> filesFrom(const Json& list) {
-    std::vector<RecordedFile> files;
-    for (const Json& json : list) {
-        files.push_back({json.at("file"), json.value("files", std::uint64_t{1}), json.at("bytes"),
-                         json.at("sha256"), json.at("modifiedNs"), json.at("changedNs"),
-                         json.value("option", ""), json.value("place", "")});
-    }
-    return files;
-}
-
-/// \throws Json::exception  a key is missing, or its value has another type
-RunRecord recordFrom(const Json& json) {
-    RunRecord record;
-    record.program = json.at("program").at("name");
-    record.version = json.at("build");
-    record.hasEnded = json.at("ended");
-    record.date = json.at("date");
-    record.says = json.at("says");
-    record.asked = json.value("asked", Json());
-    record.name = json.at("name");
-    record.files = json.at("files").get<std::vector<std::string>>();
-    if (!json.at("exitCode").is_null()) record.exitCode = json.at("exitCode");
-    if (!json.at("signal").is_null()) record.signal = json.at("signal");
-    if (!record.isFinished() && json.at("error").is_object()) {
-        record.error = json["error"].at("text");
-    }
-    record.warnings = json.at("warnings").get<std::vector<Warning>>();
-    record.outputs = json.at("outputs").get<std::vector<std::string>>();
-    record.seconds = json.at("seconds");
-    record.report = json.at("report");
-    for (const Json& option : json.at("options")) {
-        record.options.push_back({option.at("name"), option.at("sha256")});
-    }
-    record.inputs = filesFrom(json.at("inputs"));
-    record.recordedOutputs = filesFrom(json.at("keptOutputs"));
-    return record;
 }
 
 /// The first line of a child's stderr, without the program's name and the inputs' folders.
@@ -278,7 +244,7 @@ void addResult(const ChildResult& result, const std::vector<fs::path>& inputs, R
     record.seconds = result.seconds;
     record.wasShort =
         result.signal != 0 || result.exitCode == kNotStarted || result.exitCode == kNotExecutable;
-    Json report = Json::parse(result.output, nullptr, false);
+    Json report = parseJson<Json>(result.output);
     if (report.is_object()) {
         record.warnings = report.value("warnings", std::vector<Warning>());
         record.wasShort = record.wasShort || report.value("shortage", false);
@@ -330,19 +296,6 @@ std::vector<fs::path> recordFiles(const fs::path& folder, bool hasSubjects) {
     return found;
 }
 
-RecordFault readRecord(const fs::path& path, RunRecord& record) {
-    std::ifstream file(path);
-    if (!file) return RecordFault::Missing;
-    try {
-        const Json json = Json::parse(file);
-        if (json.at("schema") != kRecordSchema) return RecordFault::OfAnotherVersion;
-        record = recordFrom(json);
-        return RecordFault::None;
-    } catch (const Json::exception&) {
-        return RecordFault::Damaged;  // not one of ours, or edited
-    }
-}
-
 void writeRecord(const fs::path& file, const RunRecord& record) {
     Json json = lineJson(record);
     json["schema"] = kRecordSchema;
@@ -359,7 +312,7 @@ void writeRecord(const fs::path& file, const RunRecord& record) {
     for (const RecordedFile& output : record.recordedOutputs) {
         json["keptOutputs"].push_back(toJson(output));
     }
-    writeWhole(file, jsonText(json) + "\n");
+    writeWhole(file, jsonText(json) + "\n", detail::folderOf(file));
 }
 
 std::string recordDate() {
@@ -371,8 +324,8 @@ std::string recordDate() {
     return {text.data(), length};
 }
 
-void writeWhole(const fs::path& file, const std::string& text) {
-    AtomicOutput output(file);
+void writeWhole(const fs::path& file, const std::string& text, const fs::path& ownFolder) {
+    AtomicOutput output(file, ownFolder);
     output.writeText(text);
     AtomicOutput::commit({&output, 1});
 }

@@ -10,6 +10,8 @@
 
 namespace adaptiso {
 
+inline constexpr const char* kRecordSchema = "adaptiso-record/1";
+
 /// A file, or several that belong together, as a record describes it.
 struct RecordedFile {
     std::string file;  ///< its name, or for an output its path from the record's folder
@@ -100,16 +102,18 @@ std::vector<std::filesystem::path> recordFiles(const std::filesystem::path& fold
 
 enum class RecordFault { None, Missing, Damaged, OfAnotherVersion };
 
-/// Reads a record or returns why it can't be read. Throws nothing, whatever the file holds.
+/// Reads a record or returns why it can't be read. Throws nothing, whatever the file holds. A
+/// record that names a file outside its folder is damaged.
 RecordFault readRecord(const std::filesystem::path& path, RunRecord& record);
 
-/// \throws FileError
+/// \throws FileError  also where a link lies in its place
 void writeRecord(const std::filesystem::path& file, const RunRecord& record);
 
 /// The present time for RunRecord::date.
 std::string recordDate();
 
-/// Writes a text as a whole file. \throws FileError
-void writeWhole(const std::filesystem::path& file, const std::string& text);
+/// Writes a text as a whole file. \param ownFolder  as AtomicOutput takes it \throws FileError
+void writeWhole(const std::filesystem::path& file, const std::string& text,
+                const std::filesystem::path& ownFolder = {});
 
 }  // namespace adaptiso

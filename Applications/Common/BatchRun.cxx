@@ -11,6 +11,7 @@
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
+#include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -137,13 +138,42 @@ std::vector<RecordedFile> describedInputs(const PlannedRun& run, const fs::path&
             const std::string inFolder =
                 file.lexically_relative(fs::absolute(folder).lexically_normal()).string();
             if (inFolder.empty() || inFolder.starts_with("..")) continue;
-            inputs.back().place =
-                file.lexically_relative(fs::absolute(run.item.folder).lexically_normal()).string();
+            const fs::path place =
+                file.lexically_relative(fs::absolute(run.item.folder).lexically_normal());
+            if (staysBelow(place)) inputs.back().place = place.string();
         }
     } catch (const FileError&) {
         inputs.clear();
     }
     return inputs;
+}
+
+/// "a.json" of "a.vtp" and of "a/walls.vtp".
+std::string sidecarName(const fs::path& output) {
+    const std::string top = *output.begin();
+    return top.substr(0, top.find('.')) + ".json";
+}
+
+/// Why nothing may be written where `run` puts its files: a link that nobody named stands there.
+/// May be empty. \param folder  that the batch writes to; may be empty
+std::string linkFault(const BatchProgram& program, const PlannedRun& run, const fs::path& folder) {
+    std::vector<fs::path> files{run.surfaces};
+    if (!run.outputFolder.empty()) files.push_back(run.item.folder / run.outputFolder);
+    if (program.sidecar) {
+        for (std::size_t n = files.size(); n-- > 0;) {
+            files.push_back(files[n].parent_path() / sidecarName(files[n].filename()));
+        }
+    }
+    files.insert(files.end(), {run.item.folder, run.record});
+    for (const auto& extra : run.extras) files.push_back(extra.second);
+    try {
+        for (const fs::path& file : files) {
+            if (!file.empty()) requireNoLink(file, folder);
+        }
+        return {};
+    } catch (const FileError& error) {
+        return error.what();
+    }
 }
 
 class BatchRun {
@@ -160,7 +190,11 @@ public:
           reasons_(runs.size()),
           areCurrent_(runs.size()),
           inputs_(runs.size()),
-          progress_(common.isQuiet) {}
+          progress_(common.isQuiet) {
+        for (const PlannedRun& run : runs_) {
+            linkFaults_.push_back(linkFault(program_, run, running_.folder));
+        }
+    }
 
     std::vector<RunRecord> run() {
         try {
@@ -184,8 +218,8 @@ private:
         writePage();
         printNext();
         for (const std::size_t n : waiting) {
-            if (runs_[n].item.fault.empty()) continue;
-            finish(n, {.exitCode = kExitBadInput, .errors = runs_[n].item.fault});
+            if (fault(n).empty()) continue;
+            finish(n, {.exitCode = kExitBadInput, .errors = fault(n)});
         }
         runChildren(
             waiting.size(), batch_.jobs.value_or(1),
@@ -196,10 +230,17 @@ private:
         writePage();
     }
 
+    /// Why a run fails without being started; may be empty.
+    const std::string& fault(std::size_t n) const {
+        return linkFaults_[n].empty() ? runs_[n].item.fault : linkFaults_[n];
+    }
+
+    bool keepsRecord(std::size_t n) const { return keepsRecords_ && linkFaults_[n].empty(); }
+
     /// With --skip-existing, takes the result of an earlier run, or of another batch meanwhile.
     /// \param isFirst  its record does not say yet that it is running
     bool takeEarlier(std::size_t n, bool isFirst = false) {
-        if (!batch_.skipsExisting || !runs_[n].item.fault.empty()) return false;
+        if (!batch_.skipsExisting || !fault(n).empty()) return false;
         EarlierRun earlier = findEarlierRun(program_, runs_[n], running_.folder);
         if (isFirst) {
             reasons_[n] = earlier.isThere ? earlier.why : "";
@@ -229,8 +270,8 @@ private:
 
     /// Leaves a record of a run to come, so that pages name it even if this batch is killed.
     void announce(std::size_t n) {
-        if (!keepsRecords_) return;
-        if (!runs_[n].item.folder.empty()) makeFolders(runs_[n].item.folder);
+        if (!keepsRecord(n)) return;
+        if (!runs_[n].item.folder.empty()) makeFolders(runs_[n].item.folder, running_.folder);
         if (fs::exists(runs_[n].record)) return;
         writeRecord(runs_[n].record, newRecord(n));
         announced_.push_back(runs_[n].record);
@@ -253,10 +294,10 @@ private:
             printNext();
             return {};
         }
-        if (!run.item.folder.empty()) makeFolders(run.item.folder);
+        if (!run.item.folder.empty()) makeFolders(run.item.folder, running_.folder);
         if (program_.removesFormer && !areCurrent_[n]) removeFormer(run);
         inputs_[n] = describedInputs(run, running_.folder);
-        if (keepsRecords_) writeRecord(run.record, newRecord(n));
+        if (keepsRecord(n)) writeRecord(run.record, newRecord(n));
         return run.arguments;
     }
 
@@ -286,7 +327,7 @@ private:
         // of two batches in one folder the slower may fail where the other has finished
         if (record.isFinished() || !takeEarlier(n)) {
             addFiles(n, record);
-            if (keepsRecords_) writeRecord(run.record, record);
+            if (keepsRecord(n)) writeRecord(run.record, record);
             ended_[n] = std::move(record);
         }
         printNext();
@@ -322,11 +363,9 @@ private:
             }
             const std::vector<std::string> made = record.outputs;
             for (std::size_t k = 0; k < std::min(parts.size(), made.size()); ++k) {
-                // "a.json" beside "a.vtp" and beside the folder "a"
-                const std::string top = *fs::path(made[k]).begin();
-                const std::string name = top.substr(0, top.find('.')) + ".json";
+                const std::string name = sidecarName(made[k]);
                 writeWhole(run.item.folder / name,
-                           jsonText(program_.sidecar(run.item, parts[k])) + "\n");
+                           jsonText(program_.sidecar(run.item, parts[k])) + "\n", run.item.folder);
                 add(kOutput, name);
             }
         }
@@ -335,7 +374,8 @@ private:
             for (const fs::path& file : filesOfInput(path, {})) {
                 if (!fs::exists(file)) continue;
                 const fs::path base = run.item.folder.empty() ? "." : run.item.folder;
-                add(option, file.lexically_proximate(base).string());
+                const fs::path name = file.lexically_proximate(base);
+                if (staysBelow(name)) add(option, name.string());
             }
         }
     }
@@ -388,9 +428,9 @@ private:
         std::map<fs::path, RunRecord> own;
         for (std::size_t n = 0; n < runs_.size(); ++n) {
             if (!ended_[n]) own.emplace(runs_[n].record, newRecord(n));
-            if (ended_[n] && !keepsRecords_) own.emplace(runs_[n].record, *ended_[n]);
+            if (ended_[n] && !keepsRecord(n)) own.emplace(runs_[n].record, *ended_[n]);
         }
-        writeSummary(running_.summary, running_.folder, own);
+        writeSummary(running_.summary, running_.folder, own, running_.summaryFolder);
     }
 
     using Clock = std::chrono::steady_clock;
@@ -402,6 +442,7 @@ private:
     const CommonOptions& common_;
     const bool keepsRecords_;
     std::vector<std::optional<RunRecord>> ended_;    ///< empty while it has not ended
+    std::vector<std::string> linkFaults_;            ///< linkFault(), which is no run's
     std::vector<std::string> reasons_;               ///< to run again
     std::vector<bool> areCurrent_;                   ///< EarlierRun::isCurrent
     std::vector<std::vector<RecordedFile>> inputs_;  ///< as of the run's start
@@ -448,7 +489,11 @@ std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record) {
                 return output.option == extra.first &&
                        (file == wanted || file.parent_path() / "" == folder);
             });
-        if (!isRecorded) return wanted.filename().string() + " was not made";
+        // one elsewhere is in no record
+        const bool isElsewhere = !staysBelow(wanted.lexically_proximate(run.item.folder / ""));
+        if (!isRecorded && !(isElsewhere && fs::exists(wanted))) {
+            return wanted.filename().string() + " was not made";
+        }
     }
     if (!run.surfaces.empty() && record.outputs.empty()) return "it holds no surface";
     for (const RecordedFile& output : record.recordedOutputs) {

@@ -204,11 +204,11 @@ std::vector<SummaryRow> summaryRows(const fs::path& folder,
 }
 
 void writeSummary(const fs::path& page, const fs::path& folder,
-                  const std::map<fs::path, RunRecord>& own) {
+                  const std::map<fs::path, RunRecord>& own, const fs::path& ownFolder) {
     const int lock = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
     if (lock >= 0) flock(lock, LOCK_EX);  // fails where the file system has none
     try {
-        writeWhole(page, summaryPage(summaryRows(folder, own), page));
+        writeWhole(page, summaryPage(summaryRows(folder, own), page), ownFolder);
     } catch (...) {
         close(lock);
         throw;

@@ -48,8 +48,10 @@ std::vector<SummaryRow> summaryRows(const std::filesystem::path& folder,
                                     const std::map<std::filesystem::path, RunRecord>& own);
 
 /// Writes the page of summaryRows(). Of several processes that write it at once the last shows all
-/// records, where the file system has locks. \throws FileError
+/// records, where the file system has locks. \param ownFolder  as AtomicOutput takes it
+/// \throws FileError
 void writeSummary(const std::filesystem::path& page, const std::filesystem::path& folder,
-                  const std::map<std::filesystem::path, RunRecord>& own);
+                  const std::map<std::filesystem::path, RunRecord>& own,
+                  const std::filesystem::path& ownFolder);
 
 }  // namespace adaptiso

@@ -31,7 +31,8 @@ OutputPlan::OutputPlan(std::span<const fs::path> inputs) {
                  [](const fs::path& input) { return !input.empty(); });
 }
 
-void OutputPlan::add(const std::string& option, const fs::path& file) {
+void OutputPlan::add(const std::string& option, const fs::path& file, const fs::path& ownFolder) {
+    if (!ownFolder.empty()) checkOutput(file, ownFolder);
     const auto isSame = [&](const fs::path& other) { return wholePath(other) == wholePath(file); };
     if (std::ranges::any_of(outputs_, isSame)) {
         throw UsageError(option + " " + file.string() + ": is the name of another output too");
@@ -73,8 +74,8 @@ void ProgramRun::printNewWarnings() {
     printed_ = warnings.size();
 }
 
-AtomicOutput& ProgramRun::addOutput(const fs::path& file) {
-    return outputs_.emplace_back(file);
+AtomicOutput& ProgramRun::addOutput(const fs::path& file, const fs::path& ownFolder) {
+    return outputs_.emplace_back(file, ownFolder);
 }
 
 std::vector<Picture> ProgramRun::writePage(const std::function<Report()>& make) {

@@ -27,8 +27,11 @@ public:
     /// \param inputs  empty paths are ignored
     explicit OutputPlan(std::span<const std::filesystem::path> inputs);
 
-    /// Adds the file that `option` names. \throws UsageError  another output has the same name
-    void add(const std::string& option, const std::filesystem::path& file);
+    /// Adds the file that `option` names. \param ownFolder  as AtomicOutput takes it
+    /// \throws UsageError  another output has the same name
+    /// \throws FileError   a link lies below `ownFolder`
+    void add(const std::string& option, const std::filesystem::path& file,
+             const std::filesystem::path& ownFolder = {});
 
     /// Checks a folder that will be replaced whole. \throws FileError  it is or holds an input
     void checkFolder(const std::filesystem::path& folder) const;
@@ -73,7 +76,9 @@ public:
     bool failsStrict() const { return adaptiso::failsStrict(common_, warnings); }
 
     /// A file in its temporary place; valid until the next call.
-    AtomicOutput& addOutput(const std::filesystem::path& file);
+    /// \param ownFolder  as AtomicOutput takes it
+    AtomicOutput& addOutput(const std::filesystem::path& file,
+                            const std::filesystem::path& ownFolder = {});
     /// Removes every output added so far.
     void dropOutputs() { outputs_.clear(); }
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
+#include <cstdio>
 #include <ostream>
 #include <utility>
 
@@ -19,7 +19,9 @@ const StageTimer kSinceStart;
 
 void show(const std::string& text) {
     if (progressObserver) return progressObserver(text);
-    std::cerr << "\r\033[K" << text << std::flush;
+    // past std::cerr, which passes no such sequence on
+    std::fputs(("\r\033[K" + withoutControls(text)).c_str(), stderr);
+    std::fflush(stderr);
 }
 
 }  // namespace

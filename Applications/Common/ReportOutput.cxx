@@ -33,11 +33,13 @@ std::vector<Picture> writePictures(Report report, const std::string& program,
     std::vector<Picture> pictures = drawPictures(report);
     if (!options.pictures.empty()) {
         for (const Picture& picture : pictures) {
-            outputs.emplace_back(options.pictures / picture.name).writeText(picture.png);
+            outputs.emplace_back(options.pictures / picture.name, options.pictures)
+                .writeText(picture.png);
         }
         if (options.view) {
             for (const Picture& picture : drawViews(report, *options.view)) {
-                outputs.emplace_back(options.pictures / picture.name).writeText(picture.png);
+                outputs.emplace_back(options.pictures / picture.name, options.pictures)
+                    .writeText(picture.png);
             }
         }
     }

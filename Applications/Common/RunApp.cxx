@@ -2,6 +2,10 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#ifndef __EMSCRIPTEN__
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#endif
 
 #include <CLI/CLI.hpp>
 #include <exception>
@@ -9,6 +13,7 @@
 #include <memory>
 #include <set>
 #include <sstream>
+#include <streambuf>
 #include <string_view>
 
 #include "Common/AtomicOutput.h"
@@ -16,6 +21,7 @@
 #include "Common/Json.h"
 #include "Common/UsageWords.h"
 #include "Common/Verdict.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -73,10 +79,7 @@ std::string optionsJson(const CLI::App& app) {
 }  // namespace
 
 std::string oneLine(std::string_view text) {
-    std::string line(text);
-    for (char& c : line) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    }
+    std::string line = withoutControls(text);
     while (!line.empty() && line.back() == ' ') line.pop_back();
     return line;
 }
@@ -93,6 +96,54 @@ namespace {
 std::string terminatedProgram;
 
 constexpr std::size_t kColumns = 80;
+
+/// Passes what is written to a standard stream on withoutControls(), as long as it lives: names of
+/// files, regions and patients must not steer the terminal.
+class PlainStream : public std::streambuf {
+public:
+    explicit PlainStream(std::ostream& stream) : stream_(stream), target_(stream.rdbuf(this)) {}
+    ~PlainStream() override {
+        sync();
+        stream_.rdbuf(target_);
+    }
+    PlainStream(const PlainStream&) = delete;
+    PlainStream& operator=(const PlainStream&) = delete;
+
+protected:
+    int_type overflow(int_type c) override {
+        if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
+        const char byte = traits_type::to_char_type(c);
+        return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
+    }
+    std::streamsize xsputn(const char* text, std::streamsize count) override {
+        constexpr std::size_t kMostHeld = 1 << 16;
+        held_.append(text, static_cast<std::size_t>(count));
+        // a line ends with a whole character
+        const std::size_t lines = held_.size() < kMostHeld ? 0 : held_.rfind('\n') + 1;
+        return pass(lines) ? count : 0;
+    }
+    int sync() override { return pass(held_.size()) ? target_->pubsync() : -1; }
+
+private:
+    bool pass(std::size_t bytes) {
+        const std::string text = withoutControls(std::string_view(held_).substr(0, bytes), "\n\t");
+        held_.erase(0, bytes);
+        return target_->sputn(text.data(), std::ssize(text)) == std::ssize(text);
+    }
+
+    std::ostream& stream_;
+    std::streambuf* target_;
+    std::string held_;
+};
+
+/// Neither a core file nor a crash reporter gets the image that a program has in memory.
+void leaveNoCore() {
+#if !defined(__EMSCRIPTEN__) && !defined(__SANITIZE_ADDRESS__)  // LeakSanitizer attaches to it
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+    prctl(PR_SET_DUMPABLE, 0);
+#endif
+}
 
 /// Words of `text` on lines of at most `width` characters.
 std::string folded(const std::string& text, std::size_t width, const std::string& indent = "") {
@@ -182,6 +233,8 @@ int runParsed(const Program& program, const std::function<int()>& run) {
 int runApp(int argc, const char* const* argv, const Program& program,
            const std::function<void(CLI::App&)>& declare, const std::function<int()>& run) {
     keepStandardStreams();
+    leaveNoCore();
+    const PlainStream out(std::cout), errors(std::cerr);
     removeOutputsOnSignals();
     terminatedProgram = program.name;
     std::set_terminate(endForWantOfThreads);

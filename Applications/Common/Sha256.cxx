@@ -75,7 +75,7 @@ std::string sha256OfFile(const std::filesystem::path& path) {
     const auto fail = [&path] {
         throw FileError(path.string() + ": can't be read: " + std::strerror(errno));
     };
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (file < 0) fail();
     const std::unique_ptr<const int, void (*)(const int*)> closed(
         &file, [](const int* descriptor) { close(*descriptor); });

@@ -8,6 +8,7 @@
 #include "Common/Naming.h"
 #include "Run.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -152,9 +153,11 @@ void readSources(BemRun& run) {
 void chooseTkRas(BemRun& run) {
     const BemOptions& options = run.options;
     if (!options.subject.empty()) {
-        const fs::path orig = options.subjectsDir / options.subject / "mri" / "orig.mgz";
+        const fs::path subject = options.subjectsDir / options.subject;
+        const fs::path orig = subject / "mri" / "orig.mgz";
         std::error_code error;
         if (fs::is_regular_file(orig, error)) {
+            requireIn(orig, subject);
             run.model.tkRasVolume = readVolume(orig).volume.view().geometry();
             run.model.tkRasName = "orig.mgz";
             return;

@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <span>
+#include <sstream>
 #include <system_error>
 
 #include "Common/CommonOptions.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/ParseJson.h"
 
 namespace adaptiso::bids {
 
@@ -63,6 +65,7 @@ std::vector<std::string> partsOf(const std::string& path) {
 }
 
 /// Matches the path or a folder above it; "**" stands for any number of folders.
+/// \pre no "**" follows another, so that the parts of `path` bound the depth and the ways to try
 bool fits(std::span<const std::string> pattern, std::span<const std::string> path) {
     if (pattern.empty()) return true;
     if (pattern[0] == "**" && fits(pattern.subspan(1), path)) return true;
@@ -76,7 +79,7 @@ bool fits(std::span<const std::string> pattern, std::span<const std::string> pat
 class BidsIgnore {
 public:
     explicit BidsIgnore(const fs::path& root) : root_(root) {
-        std::ifstream file(root / ".bidsignore");
+        std::istringstream file(readFoundFile(root / ".bidsignore", root).value_or(""));
         for (std::string line; std::getline(file, line);) {
             while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
             if (line.empty() || line[0] == '#') continue;
@@ -88,9 +91,15 @@ public:
             if (slash == std::string::npos || slash + 1 == line.size()) {
                 rule.pattern.insert(rule.pattern.begin(), "**");
             }
+            const auto isBoth = [](const std::string& a, const std::string& b) {
+                return a == "**" && b == "**";
+            };
+            const auto repeats = std::ranges::unique(rule.pattern, isBoth);
+            rule.pattern.erase(repeats.begin(), repeats.end());
             rules_.push_back(std::move(rule));
         }
     }
+    const fs::path& root() const { return root_; }
     /// \param path  in the dataset, begun as its root is
     bool contains(const fs::path& path) const {
         const std::vector<std::string> parts =
@@ -125,6 +134,11 @@ void addImages(const fs::path& folder, const fs::path& target, const BidsImages&
             if (!name.ends_with(ending) || name.starts_with(".") || ignored.contains(file))
                 continue;
             BatchItem item{name.substr(0, name.size() - ending.size()), {file}, target / "anat"};
+            if (fs::exists(file, error) && !liesIn(file, ignored.root())) {
+                item.fault =
+                    "is, or lies behind, a link to outside of its dataset; put the file "
+                    "itself there";
+            }
             if (!items.empty() && items.back().name == item.name &&
                 items.back().folder == item.folder) {
                 items.back().fault =
@@ -138,7 +152,7 @@ void addImages(const fs::path& folder, const fs::path& target, const BidsImages&
 
 /// participant_id in participants.tsv ("sub-01"); empty if there is no such table.
 std::optional<std::set<std::string>> listedParticipants(const fs::path& root) {
-    std::ifstream file(root / "participants.tsv");
+    std::istringstream file(readFoundFile(root / "participants.tsv", root).value_or(""));
     std::string line;
     if (!std::getline(file, line)) return std::nullopt;
     if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
@@ -190,8 +204,7 @@ bool isLabel(std::string_view text) {
 }
 
 void requireDescription(const fs::path& root) {
-    std::ifstream file(root / kDescription);
-    const Json said = Json::parse(file, nullptr, false);
+    const auto said = parseJson<Json>(readFoundFile(root / kDescription, root).value_or(""));
     for (const char* const key : {"Name", "BIDSVersion"}) {
         if (said.is_object() && said.contains(key) && said[key].is_string()) continue;
         throw InvalidInput(root.string() +
@@ -284,6 +297,13 @@ ChosenSubjects chooseSubjects(const BidsOptions& options) {
     folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
     if (folders.empty()) throw InvalidInput(root.string() + ": holds no participant (sub-*)");
     warnOfList(options, chosen);
+    std::erase_if(folders, [&](const fs::path& subject) {
+        if (liesIn(subject, root)) return false;
+        chosen.faulty.emplace_back(subject.filename().string(),
+                                   "is a link to outside of the dataset; put the folder itself "
+                                   "there");
+        return true;
+    });
     if (options.skipsValidation) return chosen;
     requireDescription(root);
     std::erase_if(folders, [&](const fs::path& subject) {

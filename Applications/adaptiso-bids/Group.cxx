@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <set>
 #include <tuple>
@@ -11,6 +10,8 @@
 #include "Dataset.h"
 #include "Jobs.h"
 #include "QualityTable.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::bids {
@@ -304,6 +305,13 @@ void takeAsked(const Json& asked, BidsOptions& options) {
     const std::string folder = asked.value("segmentations", "");
     if (!folder.empty() && options.segmentations.empty()) {
         options.segmentations = (options.output / folder).lexically_normal();
+        if (!liesIn(options.segmentations, options.dataset) &&
+            !liesIn(options.segmentations, options.output)) {
+            throw InvalidInput("the records name label maps in " + options.segmentations.string() +
+                               ", outside of BIDS_DIR and OUT_DIR; if they are right, give "
+                               "--segmentations " +
+                               options.segmentations.string());
+        }
     }
     options.makesPictures = options.makesPictures && asked.value("pictures", true);
     options.common.isStrict = options.common.isStrict || asked.value("strict", false);
@@ -331,7 +339,7 @@ void takeAsked(BidsOptions& options) {
         }
         const auto most = std::ranges::max_element(
             votes, {}, [](const auto& vote) -> const auto& { return vote.second; });
-        takeAsked(Json::parse(most->first), options);
+        takeAsked(parseJson<Json>(most->first), options);
     }
 }
 
@@ -354,8 +362,7 @@ std::string wordsOf(const BidsOptions& options) {
 
 /// The first entry of GeneratedBy in the output's description; may be null.
 Json makerOf(const fs::path& output) {
-    std::ifstream file(output / kDescription);
-    const Json json = Json::parse(file, nullptr, false);
+    const auto json = parseJson<Json>(readFoundFile(output / kDescription, output).value_or(""));
     const Json makers = json.is_object() ? json.value("GeneratedBy", Json()) : Json();
     const bool isMade = makers.is_array() && !makers.empty() && makers[0].is_object();
     return isMade ? makers[0] : Json();
@@ -403,8 +410,7 @@ std::string dumped(const Json& json) {
 
 /// An entry of SourceDatasets, with the dataset's DOI if it states one.
 Json sourceOf(const fs::path& root) {
-    std::ifstream file(root / kDescription);
-    const Json said = Json::parse(file, nullptr, false);
+    const auto said = parseJson<Json>(readFoundFile(root / kDescription, root).value_or(""));
     Json source{{"URL", "bids:raw:"}};
     if (!said.is_object() || !said.contains("DatasetDOI")) return source;
     std::string doi = said["DatasetDOI"].is_string() ? said["DatasetDOI"].get<std::string>() : "";
@@ -508,7 +514,7 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
 
     std::vector<AtomicOutput> outputs;
     const auto write = [&](const char* name, const std::string& text) {
-        outputs.emplace_back(options.output / name).writeText(text);
+        outputs.emplace_back(options.output / name, options.output).writeText(text);
     };
     std::string readme = kReadme;
     const std::string place = "%VERSION%";

@@ -9,6 +9,7 @@
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Dataset.h"
+#include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
 
@@ -45,7 +46,7 @@ ProgramInfo findProgram(const std::string& name) {
     }
     program.version = outputOf(program.executable, "--version");
     while (program.version.ends_with('\n')) program.version.pop_back();
-    const Json help = Json::parse(outputOf(program.executable, "--help-json"), nullptr, false);
+    const Json help = parseJson<Json>(outputOf(program.executable, "--help-json"));
     if (!help.is_object()) {
         throw InvalidInput(program.executable.string() + ": is of another version");
     }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ParseJson.h"
 
 namespace adaptiso::giant {
 namespace {
@@ -182,7 +183,7 @@ std::string encodePlan(const GiantPlan& plan) {
 
 GiantPlan decodePlan(std::string_view text, const std::string& name) {
     try {
-        GiantPlan plan = planFrom(Json::parse(text));
+        GiantPlan plan = planFrom(parseJson<Json>(text));
         if (const std::string fault = faultOf(plan); !fault.empty()) refusePlan(name, fault);
         if (encodePlan(plan) != text) refusePlan(name, "not as it was written");
         return plan;

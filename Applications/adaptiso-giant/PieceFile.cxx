@@ -13,6 +13,8 @@
 
 #include "Common/Sha256.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Tiles.h"
 
@@ -123,7 +125,7 @@ Counts takeHeader(PieceReader& reader, std::uint64_t fileBytes, PieceSummary& su
     const auto length = reader.take<std::uint64_t>(1).front();
     if (length > kLongestHeader) refusePiece(name, "header");
     try {
-        const Json header = Json::parse(reader.takeBytes(static_cast<std::size_t>(length)));
+        const auto header = parseJson<Json>(reader.takeBytes(static_cast<std::size_t>(length)));
         const auto count = [&](const char* key) {
             const auto value = header.at(key).get_ref<const Json::number_unsigned_t&>();
             if (value > fileBytes) refusePiece(name, key);
@@ -178,7 +180,8 @@ std::string bytesOf(const std::filesystem::path& file, std::uint64_t begin, std:
 }
 
 std::uint64_t sizeOf(const std::filesystem::path& file) {
-    std::error_code error;
+    requireIn(file, file.parent_path());
+    std::error_code error;  // also for pipes and devices
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (error) throw FileError(file.string() + ": is not there; run its step");
     return size;

@@ -79,7 +79,7 @@ std::vector<Index3> chosen(const GiantOptions& options, const std::vector<Index3
 }
 
 void writePiece(const fs::path& file, const Piece& piece) {
-    AtomicOutput output(file);
+    AtomicOutput output(file, file.parent_path());
     output.writeText(encodePiece(piece));
     AtomicOutput::commit({&output, 1});
 }
@@ -121,7 +121,7 @@ int runPieces(const GiantOptions& options, const GiantPlan& plan, const std::str
                      {"found", counts.found},
                      {"triangles", counts.triangles},
                      {"peakMemoryMb", peakMemoryMb()}});
-    deliverReport(options.common, plan.input, json.dump(2) + "\n", [&](std::ostream& out) {
+    deliverReport(options.common, plan.input, jsonText(json) + "\n", [&](std::ostream& out) {
         out << stage << ": " << formatCount(counts.made) << " made, " << formatCount(counts.found)
             << " found, " << formatCount(counts.triangles) << " triangles\n";
     });

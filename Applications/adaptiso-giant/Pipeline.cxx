@@ -1,8 +1,7 @@
 #include "Pipeline.h"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
+#include <optional>
 
 #include "Common/ChildProcess.h"
 #include "Common/Progress.h"
@@ -10,6 +9,7 @@
 #include "Common/Sha256.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FoundFiles.h"
 
 namespace adaptiso::giant {
 namespace fs = std::filesystem;
@@ -119,14 +119,12 @@ bool SeamInputs::areChanged(const Index3& seam, const std::string& inputs) {
 
 GiantPlan readPlan(const fs::path& work) {
     const fs::path file = GiantPlan::fileIn(work);
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) {
+    const std::optional<std::string> text = readFoundFile(file, work);
+    if (!text) {
         throw FileError(file.string() + ": there is no plan; make one with: adaptiso-giant plan " +
                         work.string());
     }
-    std::ostringstream text;
-    text << stream.rdbuf();
-    GiantPlan plan = decodePlan(text.str(), file.string());
+    GiantPlan plan = decodePlan(*text, file.string());
     if (plan.version != programVersion()) {
         throw FileError(file.string() + ": was made by adaptiso-giant " + plan.version +
                         ", this is " + programVersion() + "; make it again (plan)");

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <ostream>
-#include <sstream>
 
 #include "Common/AtomicOutput.h"
 #include "Common/ImageOptions.h"
@@ -12,6 +10,7 @@
 #include "Common/Warnings.h"
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/ImageIO/ImageRegions.h"
 
@@ -89,25 +88,21 @@ GiantPlan planOf(const GiantOptions& options) {
     return plan;
 }
 
-std::string textOf(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-}
-
 }  // namespace
 
 int runPlanStep(const GiantOptions& options) {
     const GiantPlan plan = planOf(options);
-    for (const char* folder : {"tiles", "seams"}) makeFolders(options.work / folder);
+    for (const char* folder : {"tiles", "seams"}) {
+        makeFolders(options.work);
+        makeFolders(options.work / folder, options.work);
+    }
     std::vector<Warning> warnings;
     addWarnings(warnings, plan.warnings, baseName(plan.input));
     printWarnings(kGiantProgram, options.common, warnings);
     const fs::path file = GiantPlan::fileIn(options.work);
     const std::string text = encodePlan(plan);
-    if (!failsStrict(options.common, warnings) && textOf(file) != text) {
-        AtomicOutput output(file);
+    if (!failsStrict(options.common, warnings) && readFoundFile(file, options.work) != text) {
+        AtomicOutput output(file, options.work);
         output.writeText(text);
         AtomicOutput::commit({&output, 1});
     }
@@ -119,7 +114,7 @@ int runPlanStep(const GiantOptions& options) {
                      {"tiles", plan.tiles.size()},
                      {"tilesOfVolume", count[0] * count[1] * count[2]},
                      {"seams", plan.seams().size()}});
-    deliverReport(options.common, options.input, json.dump(2) + "\n", [&](std::ostream& out) {
+    deliverReport(options.common, options.input, jsonText(json) + "\n", [&](std::ostream& out) {
         out << formatCount(std::ssize(plan.tiles)) << " of "
             << formatCount(count[0] * count[1] * count[2]) << " tiles may hold surface";
         if (plan.isAdaptive())

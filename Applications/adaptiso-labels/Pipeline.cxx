@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <set>
@@ -19,6 +18,8 @@
 #include "OutputFiles.h"
 #include "Regions.h"
 #include "Run.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::labels {
@@ -33,8 +34,7 @@ fs::path outputFolder(const LabelsOptions& options) {
 /// The regions' files of a run before, which may have their names.
 std::set<std::string, std::less<>> earlierRegionFiles(const fs::path& folder) {
     std::set<std::string, std::less<>> files;
-    std::ifstream stream(folder / "report.json");
-    const Json report = Json::parse(stream, nullptr, false);
+    const auto report = parseJson<Json>(readFoundFile(folder / "report.json", folder).value_or(""));
     if (!report.is_object() || !report.contains("regions") || !report["regions"].is_array()) {
         return files;
     }

@@ -67,13 +67,18 @@ fs::path outputPath(const MeshOptions& options, const std::string& isovalue) {
     return outputPath(options.output, options.isovalues.size() == 1, isovalue);
 }
 
+/// Empty for a file as --output names it, else its folder: the name is made here.
+fs::path ownFolder(const MeshOptions& options, const fs::path& file) {
+    return file == options.output ? fs::path() : detail::folderOf(file);
+}
+
 /// Checks the outputs before the volume is read.
 void checkOutputs(const MeshOptions& options) {
     OutputPlan plan({&options.input, 1});
     for (const IsovalueChoice& choice : options.isovalues) {
         const fs::path file = outputPath(options, isovalueText(choice));
         outputFrame(options.frame, meshFormatOf(file));
-        plan.add("--output", file);
+        plan.add("--output", file, ownFolder(options, file));
     }
     plan.check(options.common, options.report);
 }
@@ -214,7 +219,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     });
 
     run.stage("write", [&] {
-        AtomicOutput& output = run.addOutput(summary.file);
+        AtomicOutput& output = run.addOutput(summary.file, ownFolder(options, summary.file));
         output.write([&](const fs::path& path) { writeMesh(finished.mesh, path, write); });
         summary.bytes = fs::file_size(output.temporary());
     });

@@ -26,6 +26,11 @@ void requirePointOrder(const MeshFormat& format, const fs::path& data) {
                      " keeps no order of points, which its values would go by");
 }
 
+/// Empty where --output names the file, its folder where --output names that.
+fs::path ownFolder(const SimplifyRun& run) {
+    return run.output.file == run.command.output ? fs::path() : detail::folderOf(run.output.file);
+}
+
 /// Names the outputs and checks them before a file is read.
 void checkOutputs(SimplifyRun& run) {
     const SimplifyCommand& command = run.command;
@@ -35,11 +40,12 @@ void checkOutputs(SimplifyRun& run) {
     std::vector<fs::path> inputs = command.data;
     inputs.push_back(command.input);
     OutputPlan plan(inputs);
-    plan.add("--output", run.output.file);
+    plan.add("--output", run.output.file, ownFolder(run));
     for (const fs::path& data : command.data) {
         requirePointOrder(*run.output.format, data);
         run.data.push_back({data, dataFile(data, run.output.file), findPointDataFormat(data)});
-        plan.add("--data", run.data.back().output);
+        const fs::path& output = run.data.back().output;
+        plan.add("--data", output, detail::folderOf(output));
     }
     plan.check(command.common, command.report);
 }
@@ -217,12 +223,13 @@ MeshFile writeFiles(const TriangleMesh& mesh, TakenValues values, const MeshFile
     write.pointArrays = std::move(values.arrays);
     write.isInFrame = true;
     write.saysFrame = change.isSaid;
-    AtomicOutput& output = run.addOutput(run.output.file);
+    AtomicOutput& output = run.addOutput(run.output.file, ownFolder(run));
     output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
     const fs::path written = output.temporary();
     run.bytes = fs::file_size(written);
     for (std::size_t n = 0; n < values.data.size(); ++n) {
-        run.addOutput(run.data[n].output).write([&](const fs::path& path) {
+        const fs::path& file = run.data[n].output;
+        run.addOutput(file, detail::folderOf(file)).write([&](const fs::path& path) {
             writePointData(values.data[n], std::ssize(mesh.triangles), path);
         });
     }

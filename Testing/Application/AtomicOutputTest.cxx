@@ -106,6 +106,22 @@ TEST_F(AtomicOutputTest, FollowsALinkThatLeadsToNoFileYet) {
     EXPECT_EQ(text(folder_ / "real.txt"), "x");
 }
 
+TEST_F(AtomicOutputTest, FollowsNoLinkUnderANameThatTheProgramChose) {
+    fs::create_directory(folder_ / "in");
+    fs::create_symlink("../real.txt", folder_ / "in/link.txt");
+    fs::create_symlink("in", folder_ / "way");
+    EXPECT_THROW(AtomicOutput(folder_ / "in/link.txt", folder_ / "in"), FileError);
+    EXPECT_THROW(AtomicOutput(folder_ / "way/a.txt", folder_), FileError);
+    EXPECT_THROW(makeFolders(folder_ / "way/deeper", folder_), FileError);
+    EXPECT_FALSE(fs::exists(folder_ / "in/deeper"));
+    EXPECT_FALSE(fs::exists(folder_ / "real.txt"));
+    std::vector<AtomicOutput> outputs;
+    outputs.emplace_back(folder_ / "way/a.txt", folder_ / "way").writeText("x");
+    fs::create_symlink("../real.txt", folder_ / "in/a.txt");  // meanwhile
+    EXPECT_THROW(AtomicOutput::commit(outputs), FileError);
+    EXPECT_FALSE(fs::exists(folder_ / "real.txt"));
+}
+
 TEST_F(AtomicOutputTest, RefusesTargetsThatCanNotBeFiles) {
     EXPECT_THROW(AtomicOutput(folder_ / "missing" / "a.txt"), FileError);
     EXPECT_THROW(AtomicOutput{folder_}, FileError);

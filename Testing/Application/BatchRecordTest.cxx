@@ -50,7 +50,7 @@ TEST_F(BatchRecordTest, ComesBackAsItWasWritten) {
     record.outputs = {"a.stl"};
     record.says = "fine";
     record.options = {{"--iso", "12ab"}};
-    record.inputs = {{"a.nii", 1, 2, "34cd", 5, 6, "", "../a.nii"}};
+    record.inputs = {{"a.nii", 1, 2, "34cd", 5, 6, "", "in/a.nii"}};
     record.recordedOutputs = {{"a.stl", 1, 7, "89ef", 10, 11, "--output"}};
     writeRecord(file, record);
     RunRecord again;
@@ -59,7 +59,7 @@ TEST_F(BatchRecordTest, ComesBackAsItWasWritten) {
     EXPECT_EQ(again.exitCode, 1);
     EXPECT_EQ(again.outputs, record.outputs);
     EXPECT_EQ(again.options, record.options);
-    EXPECT_EQ(again.inputs.at(0).place, "../a.nii");
+    EXPECT_EQ(again.inputs.at(0).place, "in/a.nii");
     EXPECT_EQ(again.inputs.at(0).sha256, "34cd");
     EXPECT_EQ(again.recordedOutputs.at(0).bytes, 7u);
     EXPECT_EQ(again.recordedOutputs.at(0).option, "--output");
@@ -84,6 +84,39 @@ TEST_F(BatchRecordTest, WhateverAFileHoldsNothingIsThrown) {
     }
     fs::remove(file);
     EXPECT_EQ(readRecord(file, record), RecordFault::Missing);
+}
+
+TEST_F(BatchRecordTest, ThatNamesAFileElsewhereIsDamaged) {
+    const fs::path file = folder_ / "in/a.stl.adaptiso-mesh.json";
+    fs::create_directories(folder_ / "in");
+    put("victim", "x");
+    fs::create_symlink("../victim", folder_ / "in/link");
+    for (const std::string& place :
+         {std::string("../victim"), (folder_ / "victim").string(), std::string("a/../../victim"),
+          std::string("link"), std::string()}) {
+        for (int key = 0; key < 3; ++key) {
+            RunRecord record = recordOfRun("adaptiso-mesh"), read;
+            if (key == 0) record.outputs = {place};
+            if (key == 1) record.recordedOutputs = {{place, 1, 1, "0", 1, 1, "--output"}};
+            if (key == 2) record.inputs = {{"a.nii", 1, 1, "0", 1, 1, "", place}};
+            writeRecord(file, record);
+            const bool isFine = key == 2 && place.empty();  // an input elsewhere has no place
+            EXPECT_EQ(readRecord(file, read), isFine ? RecordFault::None : RecordFault::Damaged)
+                << place << key;
+        }
+    }
+}
+
+TEST_F(BatchRecordTest, HeadersOfInputsLeadToNoFileElsewhere) {
+    put("victim", "x");
+    fs::create_directories(folder_ / "in");
+    fs::create_symlink("../victim", folder_ / "in/link.raw");
+    for (const std::string& name :
+         {std::string("../victim"), (folder_ / "victim").string(), std::string("link.raw")}) {
+        put("in/a.mhd", "ObjectType = Image\nElementDataFile = " + name + "\n");
+        EXPECT_EQ(filesOfInput(folder_ / "in/a.mhd", {}).size(), 1u) << name;
+    }
+    EXPECT_EQ(filesOfInput(folder_ / "in", {}).size(), 1u);
 }
 
 TEST_F(BatchRecordTest, RowsAreThoseOfAllProgramsTheWorstFirst) {

@@ -8,16 +8,23 @@
 
 #include "Calls.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 
 PYBIND11_MODULE(_adaptiso, module) {
     using namespace adaptiso::python;
     module.attr("__version__") = ADAPTISO_VERSION;
-    const auto error = py::register_exception<adaptiso::Error>(module, "Error", PyExc_ValueError);
-    error.doc() = "What can't be used: a file, an array, an argument. The message is one line.";
-    py::register_exception<adaptiso::InternalError>(module, "InternalError", PyExc_RuntimeError);
+    static const py::exception<adaptiso::Error> error(module, "Error", PyExc_ValueError);
+    error.attr("__doc__") =
+        "What can't be used: a file, an array, an argument. The message is one line.";
+    static const py::exception<adaptiso::InternalError> internalError(module, "InternalError",
+                                                                      PyExc_RuntimeError);
     py::register_local_exception_translator([](std::exception_ptr thrown) {
         try {
             std::rethrow_exception(std::move(thrown));
+        } catch (const adaptiso::InternalError& fault) {
+            PyErr_SetString(internalError.ptr(), adaptiso::withoutControls(fault.what()).c_str());
+        } catch (const adaptiso::Error& fault) {
+            PyErr_SetString(error.ptr(), adaptiso::withoutControls(fault.what()).c_str());
         } catch (const std::bad_alloc&) {
             PyErr_SetString(PyExc_MemoryError, "adaptiso: there is not enough memory");
         }

@@ -1,0 +1,81 @@
+#include "Common/BatchRecord.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/ParseJson.h"
+
+namespace adaptiso {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<RecordedFile> filesFrom(const Json& list) {
+    std::vector<RecordedFile> files;
+    for (const Json& json : list) {
+        files.push_back({json.at("file"), json.value("files", std::uint64_t{1}), json.at("bytes"),
+                         json.at("sha256"), json.at("modifiedNs"), json.at("changedNs"),
+                         json.value("option", ""), json.value("place", "")});
+    }
+    return files;
+}
+
+/// A record must not lead to files elsewhere.
+/// \param folder  the record's \throws FileError
+void requirePlaces(const RunRecord& record, const fs::path& folder) {
+    const auto require = [&](const std::string& place) {
+        if (!staysBelow(place)) throw FileError("it names a file outside its folder");
+        requireIn(folder / place, folder);
+    };
+    for (const std::string& output : record.outputs) require(output);
+    for (const RecordedFile& output : record.recordedOutputs) require(output.file);
+    for (const RecordedFile& input : record.inputs) {
+        if (!input.place.empty()) require(input.place);
+    }
+}
+
+/// \throws Json::exception  a key is missing, or its value has another type
+RunRecord recordFrom(const Json& json) {
+    RunRecord record;
+    record.program = json.at("program").at("name");
+    record.version = json.at("build");
+    record.hasEnded = json.at("ended");
+    record.date = json.at("date");
+    record.says = json.at("says");
+    record.asked = json.value("asked", Json());
+    record.name = json.at("name");
+    record.files = json.at("files").get<std::vector<std::string>>();
+    if (!json.at("exitCode").is_null()) record.exitCode = json.at("exitCode");
+    if (!json.at("signal").is_null()) record.signal = json.at("signal");
+    if (!record.isFinished() && json.at("error").is_object()) {
+        record.error = json["error"].at("text");
+    }
+    record.warnings = json.at("warnings").get<std::vector<Warning>>();
+    record.outputs = json.at("outputs").get<std::vector<std::string>>();
+    record.seconds = json.at("seconds");
+    record.report = json.at("report");
+    for (const Json& option : json.at("options")) {
+        record.options.push_back({option.at("name"), option.at("sha256")});
+    }
+    record.inputs = filesFrom(json.at("inputs"));
+    record.recordedOutputs = filesFrom(json.at("keptOutputs"));
+    return record;
+}
+
+}  // namespace
+
+RecordFault readRecord(const fs::path& path, RunRecord& record) {
+    try {
+        const fs::path folder = path.parent_path();
+        const std::optional<std::string> text = readFoundFile(path, folder);
+        if (!text) return RecordFault::Missing;
+        const auto json = parseJson<Json>(*text);
+        if (json.at("schema") != kRecordSchema) return RecordFault::OfAnotherVersion;
+        record = recordFrom(json);
+        requirePlaces(record, folder);
+        return RecordFault::None;
+    } catch (const Json::exception&) {
+        return RecordFault::Damaged;  // not one of ours, or edited
+    } catch (const FileError&) {
+        return RecordFault::Damaged;
+    }
+}
+
+}  // namespace adaptiso
