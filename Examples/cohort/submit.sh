@@ -22,6 +22,13 @@ if [ $# -gt 0 ]; then
         echo "submit.sh: $jobs is there already; go on with: submit.sh $jobs" >&2
         exit 2
     fi
+    # a name with a line end or a blank would be taken for several, one with dashes for an option
+    if odd=$(cd "$bids" && find . -maxdepth 1 -name 'sub-*' -xtype d ! -regex '\./sub-[A-Za-z0-9+]+' -print -quit) &&
+        [ -n "$odd" ]; then
+        printf 'submit.sh: %q in BIDS_DIR: is no name of a participant (sub- and letters and digits)\n' \
+            "${odd#./}" >&2
+        exit 3
+    fi
     mkdir -p "$jobs/logs"
     printf '%s\n' "$bids" "$out" >"$jobs/folders"
     printf '%s\n' "$@" >"$jobs/options"

@@ -28,6 +28,6 @@ for stage in tile seam; do
     echo "$stage $job"
 done
 # shellcheck disable=SC2086
-job=$(sbatch --parsable $after --output="$work/logs/join.log" --job-name=giant-join --mem=4G --time=4:00:00 \
-    --requeue ${ADAPTISO_SBATCH:-} --wrap "adaptiso-giant join '$work' -o '$out' --json '$out.json'")
+job=$(sbatch --parsable $after --output="$work/logs/join.log" ${ADAPTISO_SBATCH:-} "$here/join.sbatch" \
+    "$work" "$out")
 echo "join $job"
