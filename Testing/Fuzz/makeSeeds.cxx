@@ -87,6 +87,31 @@ void addLabelSeeds(Seeds& seeds) {
     }
 }
 
+void addRecordSeeds(Seeds& seeds) {
+    seeds.add("record",
+              R"({"schema":"adaptiso-record/1","program":{"name":"adaptiso-mesh"},"build":"x",)"
+              R"("ended":true,"date":"2026","says":"x","name":"a","files":["a.nii"],"exitCode":0,)"
+              R"("signal":null,"error":null,"warnings":[],"outputs":["a.vtp"],"seconds":1.0,)"
+              R"("report":{},"options":[{"name":"--iso","sha256":"0"}],"inputs":[{"file":"a.nii",)"
+              R"("bytes":1,"sha256":"0","modifiedNs":1,"changedNs":1,"place":"a.nii"}],)"
+              R"("keptOutputs":[{"file":"a.vtp","bytes":1,"sha256":"0","modifiedNs":1,)"
+              R"("changedNs":1,"option":"--output"}]})");
+}
+
+/// Nested as deep as the fuzzers' longest input lets it.
+void addDeepSeeds(Seeds& seeds) {
+    constexpr std::size_t kDepth = 30'000;
+    const std::string deep = std::string(kDepth, '[') + std::string(kDepth, ']');
+    for (const char* const target : {"labels", "record"}) {
+        seeds.add(target, "{\"1\":" + deep + "}");
+        seeds.add(target, "[{\"index\":" + deep + "}]");
+    }
+    seeds.add("giant", '\1' + deep);
+    std::string elements = "<VTKFile>";
+    while (elements.size() < 2 * kDepth) elements += "<a>";
+    for (const char* const target : {"vtp", "gii", "labels"}) seeds.add(target, elements);
+}
+
 void addGiantSeeds(Seeds& seeds) {
     using namespace giant;
     const VolumeView volume = smallVolume(0).view();
@@ -142,6 +167,8 @@ int main(int argc, char** argv) {
         adaptiso::fuzz::addOpenMeegSeeds(seeds);
         adaptiso::fuzz::addLabelSeeds(seeds);
         adaptiso::fuzz::addGiantSeeds(seeds);
+        adaptiso::fuzz::addRecordSeeds(seeds);
+        adaptiso::fuzz::addDeepSeeds(seeds);
         adaptiso::fuzz::addMesherSeeds(seeds);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "makeSeeds: %s\n", error.what());
