@@ -6,7 +6,6 @@
 #include <array>
 #include <ctime>
 #include <fstream>
-#include <sstream>
 #include <string_view>
 
 #include "Common/CommonOptions.h"
@@ -16,6 +15,7 @@
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso {
 namespace {
@@ -55,15 +55,16 @@ std::string dataFileOf(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     in.read(header.data(), static_cast<std::streamsize>(header.size()));
     header.resize(static_cast<std::size_t>(in.gcount()));
-    const bool isNrrd = header.starts_with("NRRD");
+    const bool isNrrd = withoutByteOrderMark(header).starts_with("NRRD");
     if (!isNrrd && header.find("ElementDataFile") == std::string::npos) return {};
-    std::istringstream lines(header);
-    for (std::string line; std::getline(lines, line) && !trimmed(line).empty();) {
-        const std::size_t sign = line.find(isNrrd ? ':' : '=');
+    TextLines lines(header, LineEnds::OfFirst);
+    while (const auto line = lines.next()) {
+        if (trimmed(*line).empty()) break;
+        const std::size_t sign = line->find(isNrrd ? ':' : '=');
         if (sign == std::string::npos) continue;
-        const std::string key = lowerCase(trimmed(std::string_view(line).substr(0, sign)));
+        const std::string key = lowerCase(trimmed(line->substr(0, sign)));
         if (key == "elementdatafile" || key == "data file" || key == "datafile") {
-            return std::string(trimmed(std::string_view(line).substr(sign + 1)));
+            return std::string(trimmed(line->substr(sign + 1)));
         }
     }
     return {};

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso {
 namespace fs = std::filesystem;
@@ -130,7 +131,7 @@ bool isText(std::string_view head) {
 
 /// Pages and messages of servers, saved under a data file's name.
 std::optional<ForeignContent> serversAnswer(std::string_view head) {
-    if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
+    head = withoutByteOrderMark(head);
     const std::string text = lowerCase(trimmed(head));
     if (text.starts_with("<!doctype html") || text.starts_with("<html") ||
         (text.starts_with("<") && (text.find("<html") != std::string::npos ||
@@ -224,6 +225,7 @@ std::optional<ForeignContent> foreignContentOf(std::string_view head, const fs::
                 content.fault += notHere(digitsBehind(head, "\nsize "));
             return content;
         }
+        if (isUtf16(head)) return ForeignContent{Other, "is text in UTF-16", "save it as UTF-8"};
         if (isCifti(head)) {
             return ForeignContent{
                 Other, "is CIFTI: values at points of surfaces, no volume and no surface",

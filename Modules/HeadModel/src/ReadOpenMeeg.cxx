@@ -8,6 +8,8 @@
 #include "OpenMeegNames.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/Core/TextLines.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
@@ -39,8 +41,13 @@ public:
             throw FileError(name_ + ": is larger than any such file (1 MB)");
         }
         std::ifstream file(path, std::ios::binary);
-        for (std::string line; std::getline(file, line);) lines_.push_back(line);
-        if (!file.eof() || lines_.empty()) throw FileError(name_ + ": can't be read, or is empty");
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        if (!file || text.empty()) throw FileError(name_ + ": can't be read, or is empty");
+        if (const std::string fault = faultOfText(text); !fault.empty()) {
+            throw FileError(name_ + ": " + fault);
+        }
+        TextLines lines(text);
+        while (const auto line = lines.next()) lines_.emplace_back(trimmed(*line));
     }
 
     /// The first line, which must be `expected` to the letter.
@@ -53,7 +60,7 @@ public:
     }
 
     bool hasMore() {
-        while (at_ < lines_.size() && lines_[at_].find_first_not_of(" \t") == std::string::npos) {
+        while (at_ < lines_.size() && lines_[at_].empty()) {
             ++at_;
         }
         return at_ < lines_.size();

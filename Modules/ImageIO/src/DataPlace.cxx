@@ -11,6 +11,7 @@
 #include "Readers.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso::detail {
 
@@ -61,17 +62,15 @@ struct OtherImage {
 /// empty
 OtherImage textImage(std::string_view format, std::string_view head, std::string_view last) {
     OtherImage image{format, {}};
-    for (std::size_t begin = 0; begin < head.size();) {
-        const std::size_t end = head.find('\n', begin);
-        if (end == std::string_view::npos) return image;
-        const std::string line = lowerCase(trimmed(head.substr(begin, end - begin)));
-        begin = end + 1;
+    TextLines lines(head, LineEnds::OfFirst);
+    while (const auto whole = lines.next()) {
+        const std::string line = lowerCase(trimmed(*whole));
         const bool isDetached = line.starts_with("data file:") || line.starts_with("datafile:");
         if (isDetached) return image;
         image.isPacked = image.isPacked || line.starts_with("encoding: gz") ||
                          (line.starts_with("compresseddata") && line.ends_with("true"));
         if (last.empty() ? !line.empty() : !line.starts_with(last)) continue;
-        if (last.empty() || line.ends_with("local")) image.samplesAt = begin;
+        if (last.empty() || line.ends_with("local")) image.samplesAt = lines.position();
         return image;
     }
     return image;

@@ -6,6 +6,7 @@
 
 #include "ByteSource.h"
 #include "FileFault.h"
+#include "adaptiso/Core/TextCells.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -37,7 +38,7 @@ std::vector<std::string_view> words(std::string_view text) {
 }
 
 std::optional<double> parseNumber(std::string_view text) {
-    return parseAll<double>(text);
+    return parseReal(trimmed(text));
 }
 
 std::optional<std::int64_t> parseInteger(std::string_view text) {

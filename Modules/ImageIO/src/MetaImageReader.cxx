@@ -11,6 +11,7 @@
 #include "HeaderText.h"
 #include "Readers.h"
 #include "Samples.h"
+#include "adaptiso/Core/TextLines.h"
 
 // MetaIO opens whatever file a header names, leaves memory uninitialised where data are short,
 // crashes on odd NDims and copies the samples. The format is a text header and plain or zlib
@@ -42,11 +43,10 @@ struct MetaHeader {
 MetaHeader parseHeader(const fs::path& file) {
     const std::string text = readHead(file, kLongestHeader);
     MetaHeader header;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string_view line = trimmed(std::string_view(text).substr(begin, end - begin));
-        begin = std::min(end + 1, text.size());
-        header.byteCount = begin;
+    TextLines lines(text, LineEnds::OfFirst);
+    while (const auto whole = lines.next()) {
+        const std::string_view line = trimmed(*whole);
+        header.byteCount = lines.position();
         if (line.empty()) continue;
         const std::size_t sign = line.find_first_of("=:");
         if (sign == std::string_view::npos) {
@@ -327,7 +327,7 @@ void requireFourByteLong(const fs::path& file, std::string_view type, const Byte
 }  // namespace
 
 bool looksLikeMetaImage(std::string_view head) {
-    head = trimmed(head);
+    head = trimmed(withoutByteOrderMark(head));
     for (const std::string_view key : {"ObjectType", "NDims", "Comment", "BinaryData", "DimSize"}) {
         if (head.starts_with(key) && trimmed(head.substr(key.size())).starts_with('=')) {
             return true;

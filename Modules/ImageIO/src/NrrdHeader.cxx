@@ -12,6 +12,7 @@
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Samples.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso::detail {
 
@@ -182,11 +183,10 @@ NrrdHeader readNrrdHeader(const fs::path& file) {
     const std::string text = readHead(file, kLongestHeader);
     NrrdHeader header;
     bool isFirst = true;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string_view line = trimmed(std::string_view(text).substr(begin, end - begin));
-        begin = std::min(end + 1, text.size());
-        header.byteCount = begin;
+    TextLines lines(text, LineEnds::OfFirst);
+    while (const auto whole = lines.next()) {
+        const std::string_view line = trimmed(*whole);
+        header.byteCount = lines.position();
         if (line.empty()) return header;
         const bool isMagicOrComment = isFirst || line.starts_with('#');
         isFirst = false;

@@ -11,6 +11,7 @@
 #include "NrrdHeader.h"
 #include "Readers.h"
 #include "Samples.h"
+#include "adaptiso/Core/TextLines.h"
 
 // The header is read here: ITK 5.2.1 flips the wrong axis for left-anterior-superior, takes unknown
 // spaces as LPS and opens any file a header names. So are the samples, once and in place: ITK
@@ -76,7 +77,7 @@ DataPlace placeOf(const fs::path& file, const NrrdHeader& header, NrrdEncoding e
 }  // namespace
 
 bool looksLikeNrrd(std::string_view head) {
-    return head.starts_with("NRRD");
+    return withoutByteOrderMark(head).starts_with("NRRD");
 }
 
 ReadVolume readNrrd(const fs::path& file, const ReadOptions& options) {

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/TextLines.h"
 #include "adaptiso/ImageIO/ItkReaders.h"
 
 namespace adaptiso {
@@ -262,8 +263,10 @@ void requireWholeGe4(itk::ImageIOBase& io, const std::filesystem::path& path) {
 /// any folder.
 void requireSafeStimulate(const std::filesystem::path& path) {
     std::ifstream file(path);
-    for (std::string line; std::getline(file, line);) {
-        const auto has = [&](std::string_view text) { return line.find(text) != line.npos; };
+    const std::string header{std::istreambuf_iterator<char>(file), {}};
+    TextLines lines(header);
+    while (const auto line = lines.next()) {
+        const auto has = [&](std::string_view text) { return line->find(text) != line->npos; };
         if (has("dataType") && (has("LWORD") || has("COMPLEX"))) {
             throw FileError(path.string() +
                             ": has samples (LWORD or COMPLEX) that ITK's reader of Stimulate reads "

@@ -11,6 +11,8 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
+#include "adaptiso/Core/TextCells.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso::meshio {
 
@@ -20,40 +22,19 @@ constexpr bool isSpace(char c) {
     return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == '\v' || c == '\f';
 }
 
-template <class T>
-bool spells(std::string_view word, T& value) {
+bool spells(std::string_view word, std::int64_t& value) {
     if (word.starts_with('+')) word.remove_prefix(1);
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     return error == std::errc() && stop == word.data() + word.size();
-}
-
-/// A number for from_chars(), or with Fortran's exponent ("1.5D+02"), or as Visual C++ writes what
-/// is not finite ("-1.#IND").
-bool spellsReal(std::string_view word, double& value) {
-    if (spells(word, value)) return true;
-    if (word.find('#') != std::string_view::npos) {
-        constexpr double kInfinity = std::numeric_limits<double>::infinity();
-        value = word.find("#INF") == std::string_view::npos ? std::nan("")
-                : word.starts_with('-')                     ? -kInfinity
-                                                            : kInfinity;
-        return word.find("1.#") <= 1;
-    }
-    std::string text(word);
-    const std::size_t exponent = text.find_first_of("dD");
-    if (exponent == std::string::npos) return false;
-    text[exponent] = 'e';
-    return spells(text, value);
 }
 
 /// Whole numbers may be written as reals ("3.0", "1e2").
 bool spellsInteger(std::string_view word, std::int64_t& value) {
     if (spells(word, value)) return true;
     constexpr double kExact = 9007199254740992;  // 2^53
-    double real = 0;
-    if (!spellsReal(word, real) || !(std::abs(real) <= kExact) || real != std::floor(real)) {
-        return false;
-    }
-    value = static_cast<std::int64_t>(real);
+    const std::optional<double> real = parseReal(word);
+    if (!real || !(std::abs(*real) <= kExact) || *real != std::floor(*real)) return false;
+    value = static_cast<std::int64_t>(*real);
     return true;
 }
 
@@ -101,11 +82,7 @@ std::string_view ByteSource::take(std::size_t count) {
 }
 
 std::string_view ByteSource::line() {
-    const std::size_t end = std::min(bytes_.find_first_of("\n\r", position_), bytes_.size());
-    const std::string_view text = bytes_.substr(position_, end - position_);
-    const bool isPair = bytes_.substr(end).starts_with("\r\n");
-    position_ = std::min(end + (isPair ? 2 : 1), bytes_.size());
-    return text;
+    return takeLine(bytes_, position_);
 }
 
 std::string_view ByteSource::word() {
@@ -144,9 +121,9 @@ std::int64_t toInteger(std::string_view word, std::string_view what) {
 }
 
 double toReal(std::string_view word, std::string_view what) {
-    double value = 0;
-    if (!spellsReal(word, value)) refuseWord(word, what, "a number");
-    return value;
+    const std::optional<double> value = parseReal(word);
+    if (!value) refuseWord(word, what, "a number");
+    return *value;
 }
 
 float toFloat(double value, std::string_view what) {

@@ -89,9 +89,6 @@ Normal storedNormal(const Vec3& v);
 [[noreturn]] void refusePolygon(std::int64_t corners);
 [[noreturn]] void refuseStrips();
 
-/// `bytes` without a UTF-8 byte order mark before them.
-std::string_view withoutMark(std::string_view bytes);
-
 /// Refuses images, surfaces of formats that are not read, and what findForeignContent() knows; says
 /// what reads or converts them. \param head        the first kMeshHeadBytes bytes, unpacked \param
 /// byteCount   of the file, unpacked \param isInflated  the file is gzip \throws FileError "<what

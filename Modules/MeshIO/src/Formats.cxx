@@ -10,6 +10,7 @@
 #include "Codecs.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso {
 
@@ -142,7 +143,7 @@ bool isStl(std::string_view head, std::uint64_t byteCount) {
         const auto count = meshio::loadAs<std::uint32_t>(head.data() + 80, std::endian::little);
         if (count > 0 && byteCount == kHeaderBytes + kTriangleBytes * count) return true;
     }
-    const std::string text = lowerCase(trimmed(head));
+    const std::string text = lowerCase(trimmed(withoutByteOrderMark(head)));
     return text.starts_with("solid") && text.find("facet") != std::string::npos &&
            text.find('\0') == std::string::npos;
 }
@@ -252,9 +253,6 @@ std::optional<Other> otherSurface(std::string_view head, std::uint64_t byteCount
                      "is a surface of MNI (BIC .obj, as CIVET writes)",
                      "convert it to Wavefront OBJ: obj_mni2wf (pip install pybicpl)"};
     }
-    if (head.starts_with("\xFF\xFE"sv) || head.starts_with("\xFE\xFF"sv)) {
-        return Other{{}, "is text in UTF-16", "save it as UTF-8"};
-    }
     if (head.starts_with("#!ascii"sv)) {
         return Other{{}, "is FreeSurfer's text (.asc)", "convert it with mris_convert"};
     }
@@ -280,7 +278,7 @@ const MeshFormat* recognizeMeshFormat(std::string_view head, std::uint64_t byteC
     if (isFreeSurfer(head, byteCount)) return formatOf(MeshFormatId::FreeSurfer);
     if (isDicom(head)) return nullptr;
     if (isStl(head, byteCount)) return formatOf(MeshFormatId::Stl);
-    head = meshio::withoutMark(head);
+    head = withoutByteOrderMark(head);
     const std::string_view text = trimmed(head);
     if (text.starts_with("# vtk DataFile")) return formatOf(MeshFormatId::VtkLegacy);
     if (lowerCase(text.substr(0, text.find_first_of(" \t\r\n"))) == "ply") {
@@ -296,10 +294,6 @@ const MeshFormat* recognizeMeshFormat(std::string_view head, std::uint64_t byteC
 }
 
 namespace meshio {
-
-std::string_view withoutMark(std::string_view bytes) {
-    return bytes.starts_with("\xEF\xBB\xBF") ? bytes.substr(3) : bytes;
-}
 
 void refuseOtherContent(std::string_view head, std::uint64_t byteCount,
                         const std::filesystem::path& path, bool isInflated) {

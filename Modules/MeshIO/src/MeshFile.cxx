@@ -11,6 +11,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Core/TextLines.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Xml.h"
 
@@ -283,9 +284,11 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
                     const MeshReadOptions& options) {
     return meshio::naming(name, [&] {
+        // any bytes may begin a binary STL file
+        const auto text = format.id == MeshFormatId::Stl ? bytes : withoutByteOrderMark(bytes);
         MeshFile file = &format == &meshio::fiffFormat()
                             ? meshio::decodeFiff(bytes, meshio::fiffPart(name).second, options)
-                            : codecOf(format.id).decode(meshio::withoutMark(bytes), options);
+                            : codecOf(format.id).decode(text, options);
         file.format = &format;
         if (options.keepsFaults) {
             requireSomething(file.mesh);

@@ -7,6 +7,7 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso::meshio {
 namespace {
@@ -138,7 +139,7 @@ bool looksBinary(std::string_view bytes) {
         if (bytes.size() == kHeaderBytes + 4 + kTriangleBytes * std::uint64_t{count}) return true;
     }
     constexpr std::size_t kLook = 1024;
-    const std::string head = lowerCase(trimmed(bytes.substr(0, kLook)));
+    const std::string head = lowerCase(trimmed(withoutByteOrderMark(bytes.substr(0, kLook))));
     return !head.starts_with("solid") || head.find('\0') != std::string::npos;
 }
 
@@ -162,7 +163,7 @@ void encodeStl(const MeshRecord& record, ByteSink& sink) {
 MeshFile decodeStl(std::string_view bytes, const MeshReadOptions& options) {
     const FrameMarks marks(options);
     return looksBinary(bytes) ? decodeBinary(ByteSource(bytes), marks)
-                              : decodeText(ByteSource(bytes), marks);
+                              : decodeText(ByteSource(withoutByteOrderMark(bytes)), marks);
 }
 
 }  // namespace adaptiso::meshio

@@ -13,6 +13,7 @@
 #include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Core/TextLines.h"
 #include "adaptiso/Tetrahedra/Tetrahedra.h"
 
 namespace adaptiso {
@@ -35,7 +36,7 @@ public:
         for (;;) {
             while (at_ < bytes_.size() && isSpace(bytes_[at_])) ++at_;
             if (at_ >= bytes_.size() || bytes_[at_] != '#') break;
-            at_ = std::min(bytes_.find('\n', at_), bytes_.size());
+            takeLine(bytes_, at_);
         }
         const std::size_t begin = at_;
         while (at_ < bytes_.size() && !isSpace(bytes_[at_])) ++at_;
