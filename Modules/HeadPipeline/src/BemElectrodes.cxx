@@ -29,6 +29,24 @@ std::optional<Landmarks> landmarksOf(const std::vector<NamedPoint>& points) {
     return found == 3 ? std::optional(landmarks) : std::nullopt;
 }
 
+void warnOfPlaceless(const PointFile& file, const std::string& name, BemModel& model) {
+    const std::vector<std::string>& without = file.placeless;
+    if (without.empty()) return;
+    constexpr std::size_t kMost = 5;
+    std::string names;
+    for (std::size_t n = 0; n < std::min(kMost, without.size()); ++n) {
+        names += (n == 0 ? "" : ", ") + visibleAscii(without[n]);
+    }
+    if (without.size() > kMost) {
+        names += " and " + std::to_string(without.size() - kMost) + " more";
+    }
+    model.warnings.push_back({"electrodes-left-out",
+                              std::to_string(without.size()) + " of its " +
+                                  std::to_string(without.size() + file.points.size()) +
+                                  " points have no place and were left out: " + names,
+                              name});
+}
+
 /// Heads have a radius of some 90 mm: that tells what unit numbers are in.
 void guessUnit(PointFile& file, const std::string& name, BemModel& model) {
     if (file.saysUnit) return;
@@ -115,6 +133,7 @@ void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
 std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
     const ElectrodeOptions& options = model.options.electrodes;
     PointFile file = *options.file;
+    warnOfPlaceless(file, options.fileName, model);
     guessUnit(file, options.fileName, model);
     const std::optional<Landmarks> own = landmarksOf(file.points);
     AffineTransform move;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "Bytes.h"
@@ -11,6 +13,8 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/ParseJson.h"
+#include "adaptiso/Core/TextCells.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso {
 
@@ -39,16 +43,49 @@ PointKind kindOf(std::string_view name) {
                           : PointKind::Electrode;
 }
 
+/// A point without a place (NaN) is one of file.placeless.
 void add(PointFile& file, std::string_view name, const Vec3& point, PointKind kind) {
-    if (file.points.size() == kMostPoints) damaged("it holds more than 100,000 points");
-    if (!std::isfinite(squaredNorm(point))) damaged("a point is not finite");
+    if (file.points.size() + file.placeless.size() == kMostPoints) {
+        damaged("it holds more than 100,000 points");
+    }
     const bool isPlain = std::all_of(name.begin(), name.end(), [](char c) {
         return static_cast<unsigned char>(c) >= ' ' && c != '\x7f';
     });
     if (name.empty() || name.size() > 100 || !isPlain) {
         damaged("a point has the name " + printable(name));
     }
+    if (std::isnan(point.x) || std::isnan(point.y) || std::isnan(point.z)) {
+        file.placeless.emplace_back(name);
+        return;
+    }
+    if (!std::isfinite(squaredNorm(point))) {
+        damaged("the place of " + printable(name) + " is not finite");
+    }
     file.points.push_back({std::string(name), kind, point});
+}
+
+/// Names stand for channels, so each is to be there once. Head points are numbered only.
+void requireOneEach(const PointFile& file) {
+    std::set<std::string_view> names;
+    const auto require = [&](const std::string& name) {
+        if (names.insert(name).second) return;
+        unsupported("two of its points have the name " + printable(name),
+                    "rename or remove one of them");
+    };
+    for (const NamedPoint& point : file.points) {
+        if (point.kind != PointKind::Other) require(point.name);
+    }
+    for (const std::string& name : file.placeless) require(name);
+}
+
+/// "line 7: the coordinate x of 'Cz' is 'left', must be a number"
+[[noreturn]] void refuseCoordinate(std::string_view cell, int axis, std::string_view name,
+                                   std::int64_t line) {
+    const std::string met = linePlace(line) + "the coordinate " + "xyz"[axis] + " of " +
+                            printable(name) + " is " + printable(cell);
+    const bool hasComma = cell.find(',') != std::string_view::npos;
+    unsupported(met + (hasComma ? ", with a comma" : ""),
+                hasComma ? "save it with decimal points" : "it must be a number, or n/a");
 }
 
 double unitMm(std::string_view word) {
@@ -64,16 +101,6 @@ void scale(PointFile& file, double mm) {
     for (NamedPoint& point : file.points) point.point = mm * point.point;
 }
 
-std::vector<std::string_view> cellsOf(std::string_view line) {
-    std::vector<std::string_view> cells;
-    for (std::size_t begin = 0;;) {
-        const std::size_t end = line.find('\t', begin);
-        cells.push_back(trimmed(line.substr(begin, end == line.npos ? end : end - begin)));
-        if (end == line.npos) return cells;
-        begin = end + 1;
-    }
-}
-
 /// Frames that BIDS names; most others follow from landmarks.
 std::optional<CoordinateFrame> bidsFrame(std::string_view name) {
     const std::string lower = lowerCase(name);
@@ -87,16 +114,31 @@ std::string textOf(const Json& object, const char* key) {
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+bool isNothing(const Json& value) {
+    return value.is_null() || (value.is_string() && isMissing(value.get<std::string>()));
+}
+
+/// NaN where the value is "n/a".
 Vec3 vectorOf(const Json& value) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    if (isNothing(value)) return {kNone, kNone, kNone};
     if (!value.is_array() || value.size() != 3 ||
-        !std::all_of(value.begin(), value.end(), [](const Json& n) { return n.is_number(); })) {
+        !std::ranges::all_of(value, [](const Json& n) { return n.is_number() || isNothing(n); })) {
         damaged("a landmark of its coordinate system has no three numbers");
     }
-    return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+    Vec3 vector;
+    for (int a = 0; a < 3; ++a) {
+        const Json& number = value[static_cast<std::size_t>(a)];
+        vector[a] = number.is_number() ? number.get<double>() : kNone;
+    }
+    return vector;
 }
 
 /// Adds unit, frame and landmarks from _coordsystem.json.
 void applyCoordinateSystem(const std::string& text, PointFile& file) {
+    if (const std::string fault = faultOfText(text); !fault.empty()) {
+        throw FileError("its coordinate system (_coordsystem.json) " + fault);
+    }
     const Json json = parseJson<Json>(text);
     if (!json.is_object()) damaged("its coordinate system (_coordsystem.json) is no JSON object");
     file.frameName = textOf(json, "EEGCoordinateSystem");
@@ -116,52 +158,93 @@ void applyCoordinateSystem(const std::string& text, PointFile& file) {
     }
 }
 
-PointFile decodeTsv(std::string_view bytes) {
-    ByteSource source(bytes);
-    PointFile file;
-    file.format = "BIDS electrodes";
-    const std::vector<std::string_view> header = cellsOf(source.line());
-    std::array<std::size_t, 4> columns{};
+/// Columns that a header names, in whatever case.
+std::array<std::size_t, 4> columnsOf(const std::vector<std::string>& header) {
     constexpr std::array<std::string_view, 4> kNames{"name", "x", "y", "z"};
+    std::array<std::size_t, 4> columns{};
     for (std::size_t n = 0; n < 4; ++n) {
-        const auto found = std::find(header.begin(), header.end(), kNames[n]);
+        const auto isIt = [&](const std::string& cell) { return lowerCase(cell) == kNames[n]; };
+        const auto found = std::ranges::find_if(header, isIt);
         if (found == header.end()) {
-            damaged("its first line names no column '" + std::string(kNames[n]) + "'");
+            unsupported("its first line names no column '" + std::string(kNames[n]) + "'",
+                        "a table of electrodes begins with the columns name, x, y, z");
         }
         columns[n] = static_cast<std::size_t>(found - header.begin());
     }
-    while (!source.atEnd()) {
-        const std::string_view line = source.line();
-        if (trimmed(line).empty()) continue;
-        const std::vector<std::string_view> cells = cellsOf(line);
-        if (cells.size() != header.size()) {
-            damaged("a row has " + std::to_string(cells.size()) + " cells, the first line " +
-                    std::to_string(header.size()));
+    return columns;
+}
+
+/// Spreadsheets put commas or semicolons for BIDS's tabs.
+PointFile decodeTsv(std::string_view bytes) {
+    TextLines lines(bytes);
+    PointFile file;
+    file.format = "BIDS electrodes";
+    const std::string_view first = lines.next().value_or("");
+    const char separator = separatorOf(first);
+    const auto cells = [&](std::string_view line) {
+        const auto found = cellsOf(line, separator);
+        if (!found) unsupported(linePlace(lines.number()) + "a quote is not closed", "close it");
+        return *found;
+    };
+    const std::vector<std::string> header = cells(first);
+    const std::array<std::size_t, 4> columns = columnsOf(header);
+    const std::size_t fewest = std::ranges::max(columns) + 1;
+    bool hasComma = false, hasPoint = false;
+    while (const auto line = lines.next()) {
+        const std::vector<std::string> row = cells(*line);
+        if (std::ranges::all_of(row, &std::string::empty)) continue;
+        const auto isFilled = [](const std::string& cell) { return !cell.empty(); };
+        const auto surplus = row.begin() + std::min(std::ssize(row), std::ssize(header));
+        if (row.size() < fewest || std::any_of(surplus, row.end(), isFilled)) {
+            damaged(linePlace(lines.number()) + "a row has " + std::to_string(row.size()) +
+                    " cells, the first line " + std::to_string(header.size()));
         }
+        const std::string& name = row[columns[0]];
         Vec3 point;
-        bool isKnown = true;
         for (int a = 0; a < 3; ++a) {
-            const std::string_view cell = cells[columns[static_cast<std::size_t>(a) + 1]];
-            isKnown = isKnown && cell != "n/a";
-            if (isKnown) point[a] = toReal(cell, "a coordinate");
+            const std::string& cell = row[columns[static_cast<std::size_t>(a) + 1]];
+            const auto value = cellNumber(cell, separator);
+            if (!value) refuseCoordinate(cell, a, name, lines.number());
+            hasComma = hasComma || cell.find(',') != cell.npos;
+            hasPoint = hasPoint || cell.find('.') != cell.npos;
+            point[a] = *value;
         }
-        const std::string_view name = cells[columns[0]];
-        if (isKnown) add(file, name, point, kindOf(name));
+        add(file, name, point, kindOf(name));
+    }
+    if (hasComma && hasPoint) {
+        unsupported("its coordinates have decimal commas and decimal points",
+                    "save it with decimal points alone");
     }
     return file;
 }
 
+/// Three words; all of them "n/a" or the like where a point has no place.
+Vec3 placeOf(ByteSource& words, std::string_view name, std::int64_t line) {
+    Vec3 point;
+    for (int a = 0; a < 3; ++a) {
+        const std::string_view word = words.word();
+        if (word.empty()) {
+            damaged(linePlace(line) + "a point has " + std::to_string(a) +
+                    " coordinates, must have 3");
+        }
+        const auto value = cellNumber(word, ',');
+        if (!value) refuseCoordinate(word, a, name, line);
+        point[a] = *value;
+    }
+    return point;
+}
+
 /// Newer files name the positions, and hold them in a plane and the head's shape as well.
 PointFile decodeElc(std::string_view bytes) {
-    ByteSource source(bytes);
+    TextLines lines(bytes);
     PointFile file;
     file.format = "ASA .elc";
     std::vector<std::string> names, labels;
     std::vector<Vec3> points, shape;
     double mm = 0, shapeMm = 0;
     enum { Header, Positions, Labels, Shape } part = Header;
-    while (!source.atEnd()) {
-        const std::string_view line = trimmed(source.line());
+    while (const auto whole = lines.next()) {
+        const std::string_view line = trimmed(*whole);
         if (line.empty() || line.front() == '#') continue;
         ByteSource words(line);
         const std::string_view first = words.word();
@@ -181,13 +264,10 @@ PointFile decodeElc(std::string_view bytes) {
             part = Header;
         } else if (part == Positions || part == Shape) {
             const std::size_t colon = line.find(':');
-            if (part == Positions && colon != line.npos) {
-                names.emplace_back(trimmed(line.substr(0, colon)));
-            }
+            const std::string_view name = trimmed(line.substr(0, colon == line.npos ? 0 : colon));
+            if (part == Positions && colon != line.npos) names.emplace_back(name);
             ByteSource numbers(colon == line.npos ? line : line.substr(colon + 1));
-            Vec3 point;
-            for (int a = 0; a < 3; ++a) point[a] = numbers.realWord("a coordinate");
-            (part == Positions ? points : shape).push_back(point);
+            (part == Positions ? points : shape).push_back(placeOf(numbers, name, lines.number()));
         } else if (part == Labels) {
             for (std::string_view word = first; !word.empty(); word = words.word()) {
                 labels.emplace_back(word);
@@ -214,17 +294,15 @@ PointFile decodeElc(std::string_view bytes) {
 }
 
 PointFile decodeSfp(std::string_view bytes) {
-    ByteSource source(bytes);
+    TextLines lines(bytes);
     PointFile file;
     file.format = "BESA .sfp";
-    while (!source.atEnd()) {
-        const std::string_view line = trimmed(source.line());
+    while (const auto whole = lines.next()) {
+        const std::string_view line = trimmed(*whole);
         if (line.empty() || line.front() == '#') continue;
         ByteSource words(line);
         const std::string_view name = words.word();
-        Vec3 point;
-        for (int a = 0; a < 3; ++a) point[a] = words.realWord("a coordinate");
-        add(file, name, point, kindOf(name));
+        add(file, name, placeOf(words, name, lines.number()), kindOf(name));
     }
     return file;
 }
@@ -284,6 +362,8 @@ PointFile decodeFiff(std::string_view bytes) {
 }
 
 PointFile decoded(std::string_view bytes, std::string_view extension) {
+    const std::string fault = extension == ".fif" ? "" : faultOfText(bytes);
+    if (!fault.empty()) throw FileError(fault);
     if (extension == ".tsv") return decodeTsv(bytes);
     if (extension == ".elc") return decodeElc(bytes);
     if (extension == ".sfp") return decodeSfp(bytes);
@@ -345,9 +425,12 @@ PointFile decodePoints(std::string_view bytes, std::string_view extension, std::
                        const std::optional<std::string>& coordinateSystem) {
     return meshio::naming(name, [&] {
         PointFile file = decoded(bytes, extension);
+        requireOneEach(file);
         if (coordinateSystem) applyCoordinateSystem(*coordinateSystem, file);
-        if (file.points.empty()) damaged("it holds no point");
-        return file;
+        if (!file.points.empty()) return file;
+        if (file.placeless.empty()) damaged("it holds no point");
+        unsupported("none of its " + std::to_string(file.placeless.size()) + " points has a place",
+                    "give a file with coordinates");
     });
 }
 
@@ -365,7 +448,7 @@ void writeBidsElectrodes(std::span<const NamedPoint> points, const std::filesyst
         for (const NamedPoint& point : points) {
             if (point.kind != PointKind::Electrode) continue;
             const Vec3& p = point.point;
-            sink << point.name << "\t" << p.x << "\t" << p.y << "\t" << p.z << "\n";
+            sink << writtenCell(point.name) << "\t" << p.x << "\t" << p.y << "\t" << p.z << "\n";
         }
     });
     writeBytes(json, [&](ByteSink& sink) { sink << coordinateSystemText(points, frame); });

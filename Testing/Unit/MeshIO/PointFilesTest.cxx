@@ -2,6 +2,7 @@
 // line.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -89,6 +90,81 @@ TEST(PointFiles, OfOthersAreReadToo) {
     EXPECT_EQ(sfp.points[1].name, "E1");
 }
 
+/// The same three points in each format of text; `cz` is what stands for the place of Cz.
+std::string pointsText(const std::string& extension, const std::string& cz,
+                       const std::string& last = "Oz") {
+    if (extension == ".tsv") {
+        std::string cells = cz;
+        std::ranges::replace(cells, ' ', '\t');
+        return "name\tx\ty\tz\ttype\nFz\t70\t0\t60\tcup\nCz\t" + cells + "\tcup\n" + last +
+               "\t-95\t0\t0\tcup\n";
+    }
+    if (extension == ".sfp") return "Fz 70 0 60\nCz " + cz + "\n" + last + " -95 0 0\n";
+    return "UnitPosition mm\nPositions\n70 0 60\n" + cz + "\n-95 0 0\nLabels\nFz\nCz\n" + last +
+           "\n";
+}
+
+TEST(PointFiles, LeaveOutWhatHasNoPlace) {
+    for (const char* const extension : {".tsv", ".sfp", ".elc"}) {
+        for (const char* const cz : {"n/a n/a n/a", "NaN NaN NaN", "nan 0 0", "-1.#IND 0 0"}) {
+            const PointFile file = decodePoints(pointsText(extension, cz), extension, "a");
+            ASSERT_EQ(file.points.size(), 2u) << extension << ' ' << cz;
+            EXPECT_EQ(file.points[1].name, "Oz");
+            EXPECT_EQ(file.points[1].point, (Vec3{-95, 0, 0}));
+            EXPECT_EQ(file.placeless, std::vector<std::string>{"Cz"});
+        }
+        const PointFile whole =
+            decodePoints(pointsText(extension, "1.0D+01 +2 9.2e1"), extension, "a");
+        EXPECT_EQ(whole.points[1].point, (Vec3{10, 2, 92})) << extension;
+        EXPECT_TRUE(whole.placeless.empty());
+    }
+    EXPECT_EQ(decodePoints("name\tx\ty\tz\nCz\t\t\t\nOz\t1\t2\t3\n\t\t\t\n", ".tsv", "a").placeless,
+              std::vector<std::string>{"Cz"});
+    const PointFile bids = decodePoints(pointsText(".tsv", "0 0 92"), ".tsv", "a", R"({
+        "AnatomicalLandmarkCoordinates": {"NAS": "n/a", "LPA": [1, "n/a", 3], "RPA": [1, 2, 3]}})");
+    EXPECT_EQ(bids.placeless, (std::vector<std::string>{"LPA", "NAS"}));
+    EXPECT_EQ(bids.points.back().kind, PointKind::RightEar);
+}
+
+TEST(PointFiles, HoldEachNameOnce) {
+    for (const char* const extension : {".tsv", ".sfp", ".elc"}) {
+        try {
+            decodePoints(pointsText(extension, "0 0 92", "Fz"), extension, "a");
+            ADD_FAILURE() << extension;
+        } catch (const FileError& error) {
+            EXPECT_STREQ(error.what(),
+                         "a: two of its points have the name 'Fz'; rename or remove one of them");
+        }
+    }
+    // a landmark may be among the electrodes and in the coordinate system
+    EXPECT_NO_THROW(decodePoints("name\tx\ty\tz\nNAS\t1\t2\t3\n", ".tsv", "a",
+                                 R"({"AnatomicalLandmarkCoordinates": {"NAS": [1, 2, 3]}})"));
+}
+
+TEST(PointFiles, OfSpreadsheetsAreRead) {
+    const std::vector<std::string> texts{"Name\tX\tY\tZ\t\nCz\t1,5\t-2\t9,25\t\n",
+                                         "name;x;y;z\nCz;1,5;-2;9,25\n",
+                                         "name,x,y,z\n\"Cz\",1.5,-2,9.25\n",
+                                         "\"name\"\t\"x\"\t\"y\"\t\"z\"\n\"Cz\"\t1.5\t-2\t9.25\n",
+                                         "type\tz\ty\tx\tname\ncup\t9.25\t-2\t1.5\tCz\n",
+                                         "name\tx\ty\tz\ttype\nCz\t1.5\t-2\t9.25\n"};
+    for (const std::string& text : texts) {
+        const PointFile file = decodePoints(text, ".tsv", "a");
+        ASSERT_EQ(file.points.size(), 1u) << text;
+        EXPECT_EQ(file.points[0].name, "Cz") << text;
+        EXPECT_EQ(file.points[0].point, (Vec3{1.5, -2, 9.25})) << text;
+    }
+}
+
+TEST(PointFiles, AreNoFormulasWhenWritten) {
+    const std::vector<NamedPoint> points{{"=1+1", PointKind::Electrode, {1, 2, 3}}};
+    const auto tsv = temporaryFile("f_electrodes.tsv");
+    writeBidsElectrodes(points, tsv, tsv.parent_path() / "f_coordsystem.json",
+                        CoordinateFrame::Ras);
+    EXPECT_NE(bytesOf(tsv).find("\n'=1+1\t"), std::string::npos);
+    EXPECT_EQ(readPoints(tsv).points[0].name, "=1+1");
+}
+
 TEST(PointFiles, RefuseDamageInOneLine) {
     const auto refused = [](const std::string& bytes, const char* extension,
                             const std::optional<std::string>& json = std::nullopt) {
@@ -106,7 +182,18 @@ TEST(PointFiles, RefuseDamageInOneLine) {
     const std::string tsv = "name\tx\ty\tz\nCz\t0\t0\t9\n";
     EXPECT_NE(refused("Cz\t0\t0\t9\n", ".tsv").find("no column 'name'"), std::string::npos);
     EXPECT_NE(refused("name\tx\ty\tz\nCz\t0\t0\n", ".tsv").find("3 cells"), std::string::npos);
-    EXPECT_NE(refused("name\tx\ty\tz\nCz\t0\t0\tnan\n", ".tsv").find("finite"), std::string::npos);
+    EXPECT_NE(refused("name\tx\ty\tz\nCz\t0\t0\tinf\n", ".tsv").find("finite"), std::string::npos);
+    EXPECT_NE(refused("name\tx\ty\tz\nCz\t0\t0\tleft\n", ".tsv")
+                  .find("line 2: the coordinate z of 'Cz' is 'left'; it must be a number, or n/a"),
+              std::string::npos);
+    EXPECT_NE(refused("name\tx\ty\tz\nCz\t1.234,5\t0\t1\n", ".tsv").find("with a comma"),
+              std::string::npos);
+    EXPECT_NE(refused("name\tx\ty\tz\nCz\t1,5\t0\t1\nPz\t1.5\t0\t1\n", ".tsv")
+                  .find("decimal commas and decimal points"),
+              std::string::npos);
+    EXPECT_NE(refused("name\tx\ty\tz\nCz\tn/a\t0\tNaN\n", ".tsv").find("none of its 1 points"),
+              std::string::npos);
+    EXPECT_NE(refused("Cz 12,5 0 1\n", ".sfp").find("with a comma"), std::string::npos);
     EXPECT_NE(refused("name\tx\ty\tz\n", ".tsv").find("no point"), std::string::npos);
     EXPECT_NE(refused(tsv, ".tsv", "[1, 2]").find("no JSON object"), std::string::npos);
     EXPECT_NE(refused(tsv, ".tsv", R"({"EEGCoordinateUnits": "inch"})").find("mm, cm or m"),
@@ -118,7 +205,8 @@ TEST(PointFiles, RefuseDamageInOneLine) {
               std::string::npos);
     EXPECT_NE(refused("Positions\nA : 1 2 3\nLabels\nA B\n", ".elc").find("2 labels"),
               std::string::npos);
-    EXPECT_NE(refused("Cz 1 2\n", ".sfp").find("a coordinate"), std::string::npos);
+    EXPECT_NE(refused("Cz 1 2\n", ".sfp").find("line 1: a point has 2 coordinates"),
+              std::string::npos);
     EXPECT_NE(refused("name 1 2 3, of no FIFF file at all\n", ".fif").find("FIFF"),
               std::string::npos);
     EXPECT_NE(refused("Cz 1 2 3\n", ".xyz").find("'.xyz'"), std::string::npos);

@@ -24,6 +24,7 @@ struct NamedPoint {
 /// Points of a head as a file has them.
 struct PointFile {
     std::vector<NamedPoint> points;        ///< in mm where the unit is known
+    std::vector<std::string> placeless;    ///< names of those without a place; no part of points
     std::string format;                    ///< "BIDS electrodes", "ASA .elc", ...
     bool saysUnit = false;                 ///< else the numbers are as stored
     std::optional<CoordinateFrame> frame;  ///< empty: unknown, or one of its own (frameName)
@@ -31,15 +32,16 @@ struct PointFile {
 };
 
 /// Reads electrodes, landmarks and head points:
-///   _electrodes.tsv  of BIDS: columns name, x, y, z ("n/a": left out), tabs between them; unit,
-///   frame and
-///                    landmarks from the _coordsystem.json beside it: EEGCoordinateSystem,
-///                    EEGCoordinateUnits, AnatomicalLandmarkCoordinates (NAS, LPA, RPA)
+///   _electrodes.tsv  of BIDS: columns name, x, y, z; unit, frame and landmarks from the
+///                    _coordsystem.json beside it: EEGCoordinateSystem, EEGCoordinateUnits,
+///                    AnatomicalLandmarkCoordinates (NAS, LPA, RPA)
 ///   .elc             of ASA: UnitPosition, Positions, Labels
 ///   .sfp             of BESA and EGI: name x y z, without a unit
 ///   .fif             FIFF's digitizer block: metres, in head or MRI coordinates
-/// Landmarks are recognised by name (NAS, Nz, fidNz, LPA, fidT9, ...), upper case or lower.
-/// Files are taken for hostile: at most 100,000 points, none of them not finite.
+/// A point with a coordinate that is "n/a", NaN or empty has no place. Numbers of a .tsv may have
+/// decimal commas. Landmarks are recognised by name (NAS, Nz, fidNz, LPA, fidT9, ...), upper case
+/// or lower.
+/// Files are taken for hostile: at most 100,000 points, finite, each name once.
 /// \throws FileError  "<file>: what is wrong; what to do"
 PointFile readPoints(const std::filesystem::path& path);
 
