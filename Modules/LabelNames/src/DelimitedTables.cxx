@@ -1,46 +1,28 @@
-// Tables with one separator between fields: BIDS (tabs) and 3D Slicer (commas).
+// Tables whose first line names their columns: BIDS (tabs), 3D Slicer (commas), CAT12 (semicolons).
 #include <algorithm>
 #include <array>
 
 #include "Rows.h"
+#include "adaptiso/Core/TextCells.h"
 
 namespace adaptiso::labelnames {
 namespace {
 
 using Fields = std::vector<std::string>;
 
-/// Fields between separators; one in double quotes may hold separators and, doubled, quotes.
-/// Tab-separated ones know no quotes.
 Fields split(const Line& line, char separator) {
-    Fields fields(1);
-    bool isQuoted = false;
-    for (std::size_t n = 0; n < line.text.size(); ++n) {
-        const char c = line.text[n];
-        if (separator != '\t' && c == '"') {
-            const bool isDoubled = isQuoted && line.text.substr(n + 1).starts_with('"');
-            if (isDoubled) {
-                fields.back() += '"';
-                ++n;
-            } else {
-                isQuoted = !isQuoted;
-            }
-        } else if (c == separator && !isQuoted) {
-            fields.emplace_back();
-        } else {
-            fields.back() += c;
-        }
-    }
-    if (isQuoted) damaged(place(line) + "a quote is not closed");
-    for (std::string& field : fields) field = std::string(trimmed(field));
-    return fields;
+    const std::optional<Fields> fields = cellsOf(line.text, separator);
+    if (!fields) damaged(place(line) + "a quote is not closed");
+    return *fields;
 }
 
 /// Where the columns are that a header names; -1: nowhere.
 struct Columns {
+    char separator = '\0';
     int index = -1, name = -1, abbreviation = -1, color = -1;
     std::array<int, 3> channels{-1, -1, -1};
 
-    bool isTable() const { return index >= 0 && name >= 0; }
+    bool isTable() const { return index >= 0 && name >= 0 && index != name; }
     bool hasChannels() const { return std::ranges::min(channels) >= 0; }
 };
 
@@ -59,11 +41,13 @@ int findColumn(const Fields& header, const Words& names) {
 
 Columns columnsOf(const Fields& header) {
     Columns columns;
-    columns.index = findColumn(
-        header, {"index", "labelvalue", "label_value", "value", "key", "id", "label_id", "roi_id"});
+    columns.index =
+        findColumn(header, {"index", "labelvalue", "label_value", "value", "key", "id", "label_id",
+                            "labelid", "roi_id", "roiid", "label_number", "label"});
     columns.name = findColumn(
-        header, {"name", "labelname", "label_name", "region", "structure", "roi_name", "label"});
-    columns.abbreviation = findColumn(header, {"abbreviation", "acronym"});
+        header, {"name", "labelname", "label_name", "region", "region_name", "structure",
+                 "structure_name", "roi_name", "roiname", "totalsegmentator_name", "label"});
+    columns.abbreviation = findColumn(header, {"abbreviation", "acronym", "roiabbr"});
     columns.color = findColumn(header, {"color", "colour", "hex", "color_hex_triplet"});
     columns.channels = {findColumn(header, {"color_r", "red", "r"}),
                         findColumn(header, {"color_g", "green", "g"}),
@@ -71,11 +55,16 @@ Columns columnsOf(const Fields& header) {
     return columns;
 }
 
-char separatorOf(std::string_view line) {
-    for (const char separator : {'\t', ','}) {
-        if (line.find(separator) != std::string_view::npos) return separator;
+/// By the separator that makes a table of `line`; none if there is none.
+Columns columnsOf(const Line& line) {
+    for (const char separator : {'\t', ';', ','}) {
+        const std::optional<Fields> header = cellsOf(line.text, separator);
+        if (!header) continue;
+        Columns columns = columnsOf(*header);
+        columns.separator = separator;
+        if (columns.isTable()) return columns;
     }
-    return '\0';
+    return {};
 }
 
 /// The text of a field; empty where the row has none, or says that it has none.
@@ -84,52 +73,55 @@ std::string fieldOf(const Fields& row, int column) {
     return row[column] == "n/a" ? std::string() : row[column];
 }
 
-std::optional<LabelColor> colorOf(const Fields& row, const Columns& columns, const Line& line) {
-    if (const std::string text = fieldOf(row, columns.color); !text.empty()) {
-        const std::optional<LabelColor> color = parseHex(text);
-        if (!color) damaged(place(line) + "the colour is " + printable(text) + ", must be #RRGGBB");
-        return color;
-    }
+/// Empty where one is missing.
+std::optional<Channels> channelsOf(const Fields& row, const Columns& columns) {
     if (!columns.hasChannels()) return std::nullopt;
-    LabelColor color{};
+    Channels channels{};
     for (std::size_t n = 0; n < 3; ++n) {
         const std::string text = fieldOf(row, columns.channels[n]);
-        if (text.empty()) return std::nullopt;
-        color[n] = channelOf(text, line);
+        if (isMissing(text)) return std::nullopt;
+        // what is no number is no colour
+        channels[n] = cellNumber(text, columns.separator).value_or(-1);
     }
-    return color;
+    return channels;
 }
 
 }  // namespace
 
 bool isDelimited(std::string_view text) {
     const std::vector<Line> lines = linesOf(text);
-    if (lines.empty()) return false;
-    const char separator = separatorOf(lines.front().text);
-    if (separator == '\0') return false;
-    if (columnsOf(split(lines.front(), separator)).isTable()) return true;
-    return separator != '\t' && wholeNumber(split(lines.front(), separator).front());
+    return !lines.empty() && columnsOf(lines.front()).isTable();
 }
 
 LabelTable decodeDelimited(std::string_view text) {
     const std::vector<Line> lines = linesOf(text);
-    const char separator = separatorOf(lines.front().text);
-    const Fields header = split(lines.front(), separator);
-    Columns columns = columnsOf(header);
-    const bool hasHeader = columns.isTable();
-    if (!hasHeader) columns = {.index = 0, .name = 1};
-    Collector found(separator == '\t'                         ? "BIDS"
-                    : findColumn(header, {"labelvalue"}) >= 0 ? "3D Slicer"
-                                                              : "comma-separated");
-    for (std::size_t n = hasHeader ? 1 : 0; n < lines.size(); ++n) {
+    const Columns columns = columnsOf(lines.front());
+    const bool isSlicer = findColumn(split(lines.front(), columns.separator), {"labelvalue"}) >= 0;
+    Collector found(columns.separator == '\t'  ? "BIDS"
+                    : isSlicer                 ? "3D Slicer"
+                    : columns.separator == ';' ? "semicolon-separated"
+                                               : "comma-separated");
+    for (std::size_t n = 1; n < lines.size(); ++n) {
         const Line& line = lines[n];
-        const Fields row = split(line, separator);
-        const std::string index = fieldOf(row, columns.index), name = fieldOf(row, columns.name);
+        const Fields row = split(line, columns.separator);
+        if (std::ranges::all_of(row, &std::string::empty)) continue;
         if (row.size() < 2) {
             damaged(place(line) + "it has one field, must be an index and a name");
         }
-        found.add({valueOf(index, line), name, fieldOf(row, columns.abbreviation),
-                   colorOf(row, columns, line)});
+        const std::string where = "line " + std::to_string(line.number);
+        LabelEntry entry{valueOf(fieldOf(row, columns.index), line, columns.separator),
+                         fieldOf(row, columns.name),
+                         fieldOf(row, columns.abbreviation),
+                         {}};
+        const std::string color = fieldOf(row, columns.color);
+        entry.color = parseColor(color);
+        if (!color.empty() && !entry.color) found.leaveColorOut(where, color);
+        const std::optional<Channels> channels = channelsOf(row, columns);
+        if (color.empty() && channels) {
+            found.add(std::move(entry), *channels, where);
+        } else {
+            found.add(std::move(entry));
+        }
     }
     return found.finish();
 }

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "Rows.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso {
 namespace {
@@ -67,10 +68,10 @@ std::optional<LabelColor> parseParts(std::string_view text) {
 std::map<std::int64_t, Segment> segmentsOf(std::string_view header) {
     constexpr std::string_view kSegment = "Segment";
     std::map<std::int64_t, Segment> segments;
-    for (std::size_t begin = header.find('\n'); begin < header.size();) {
-        const std::size_t end = std::min(header.find('\n', begin + 1), header.size());
-        const std::string_view line = trimmed(header.substr(begin, end - begin));
-        begin = end;
+    TextLines lines(header, LineEnds::OfFirst);
+    lines.next();  // NRRD's version
+    while (const auto whole = lines.next()) {
+        const std::string_view line = trimmed(*whole);
         if (line.empty()) break;  // data follow
         const std::size_t colon = line.find(":="), mark = line.find('_');
         if (!line.starts_with(kSegment) || mark > colon || colon == std::string_view::npos)
@@ -157,6 +158,10 @@ LabelTable decodeExtensions(std::string_view bytes, std::int64_t volume) {
     return {};
 }
 
+bool isNrrd(std::string_view bytes) {
+    return withoutByteOrderMark(bytes).starts_with("NRRD000");
+}
+
 bool isNifti(std::string_view bytes) {
     return (bytes.size() >= 348 && bytes.substr(344, 3) == "n+1") ||
            bytes.substr(std::min<std::size_t>(4, bytes.size()), 3) == "n+2";
@@ -165,8 +170,7 @@ bool isNifti(std::string_view bytes) {
 }  // namespace
 
 LabelTable decodeEmbeddedTable(std::string_view bytes, std::int64_t volume) {
-    if (bytes.starts_with("NRRD000"))
-        return decodeSegments(bytes.substr(0, kMostNrrdBytes), volume);
+    if (isNrrd(bytes)) return decodeSegments(bytes.substr(0, kMostNrrdBytes), volume);
     return isNifti(bytes) ? decodeExtensions(bytes, volume) : LabelTable{};
 }
 
@@ -175,7 +179,7 @@ LabelTable readEmbeddedTable(const fs::path& image, std::int64_t volume) {
     if (!fs::is_regular_file(image, error)) return {};
     constexpr std::size_t kMagic = 348;
     const std::string head = readStart(image, kMagic);
-    if (head.starts_with("NRRD000")) {
+    if (isNrrd(head)) {
         return decodeEmbeddedTable(readStart(image, kMostNrrdBytes), volume);
     }
     return isNifti(head) ? decodeEmbeddedTable(readStart(image, kMostNiftiBytes), volume)

@@ -35,65 +35,60 @@ std::string textOf(const Json* json) {
     return json != nullptr && json->is_string() ? json->get<std::string>() : std::string();
 }
 
-/// Three numbers, or four with opacity: 0 to 255, or 0 to 1 where none of them is above 1 and one
-/// is no whole number or all are at most 1.
-LabelColor colorOf(const std::vector<double>& parts, std::int32_t key) {
+/// The numbers of a colour: three, or four with opacity. Empty for anything else.
+std::optional<Channels> channelsOf(std::initializer_list<const Json*> numbers) {
+    Channels channels{};
+    std::size_t n = 0;
+    for (const Json* const number : numbers) {
+        if (number == nullptr || !number->is_number()) return std::nullopt;
+        channels[n++] = number->get<double>();
+    }
+    return channels;
+}
+
+/// Channels are 0 to 255, or 0 to 1 where none of a colour is above 1.
+void addColored(Collector& found, LabelEntry entry, const Channels& channels) {
+    const bool areParts = std::ranges::max(channels) <= 1;
     LabelColor color{};
-    bool areParts = true;
     for (std::size_t n = 0; n < 3; ++n) {
-        if (!(parts[n] >= 0 && parts[n] <= 255)) {
-            damaged("the colour of label " + std::to_string(key) + " is not within 0 to 255");
+        if (!(channels[n] >= 0 && channels[n] <= 255)) {
+            found.leaveColorOut("label " + std::to_string(entry.value), formatShort(channels[n]));
+            return found.add(std::move(entry));
         }
-        areParts = areParts && parts[n] <= 1;
+        color[n] = static_cast<std::uint8_t>(std::lround((areParts ? 255 : 1) * channels[n]));
     }
-    for (std::size_t n = 0; n < 3; ++n) {
-        color[n] = static_cast<std::uint8_t>(std::lround(areParts ? 255 * parts[n] : parts[n]));
-    }
-    return color;
+    entry.color = color;
+    found.add(std::move(entry));
 }
 
-std::vector<double> numbersOf(const Json& list) {
-    std::vector<double> numbers;
-    for (const Json& each : list) {
-        if (!each.is_number()) damaged("a colour holds something that is no number");
-        numbers.push_back(each.get<double>());
-    }
-    return numbers;
-}
-
-std::optional<LabelColor> colorOf(const Json& object, std::int32_t key) {
-    const Json* color = member(
-        object, {"color", "colour", "rgb", "rgba", "rgb_triplet", "hex", "color_hex_triplet"});
-    if (color != nullptr && color->is_string()) {
-        const std::optional<LabelColor> parsed = parseHex(color->get<std::string>());
-        if (!parsed) {
-            damaged("the colour of label " + std::to_string(key) + " is " +
-                    printable(color->get<std::string>()) + ", must be #RRGGBB");
-        }
-        return parsed;
-    }
-    if (color != nullptr && color->is_array() && (color->size() == 3 || color->size() == 4)) {
-        return colorOf(numbersOf(*color), key);
-    }
-    const Json* const red = member(object, {"red", "Red", "r", "R"});
-    const Json* const green = member(object, {"green", "Green", "g", "G"});
-    const Json* const blue = member(object, {"blue", "Blue", "b", "B"});
-    if (red == nullptr || green == nullptr || blue == nullptr) return std::nullopt;
-    return colorOf(numbersOf(Json::array({*red, *green, *blue})), key);
-}
-
-LabelEntry entryOf(std::int32_t key, const Json& json) {
+void addEntry(Collector& found, std::int32_t key, const Json& json) {
     LabelEntry entry;
     entry.value = key;
     if (json.is_string()) {
         entry.name = json.get<std::string>();
-        return entry;
+        return found.add(std::move(entry));
     }
     if (!json.is_object()) damaged("label " + std::to_string(key) + " has no name");
     entry.name = textOf(member(json, {"name", "Name", "label", "Label", "text"}));
     entry.abbreviation = textOf(member(json, {"abbreviation", "acronym"}));
-    entry.color = colorOf(json, key);
-    return entry;
+    const Json* color =
+        member(json, {"color", "colour", "rgb", "rgba", "rgb_triplet", "hex", "color_hex_triplet"});
+    std::optional<Channels> channels = channelsOf({member(json, {"red", "Red", "r", "R"}),
+                                                   member(json, {"green", "Green", "g", "G"}),
+                                                   member(json, {"blue", "Blue", "b", "B"})});
+    if (color != nullptr && color->is_array() && (color->size() == 3 || color->size() == 4)) {
+        channels = channelsOf({&(*color)[0], &(*color)[1], &(*color)[2]});
+    } else if (color != nullptr) {
+        const std::string text = textOf(color);
+        entry.color = parseColor(text);
+        if (entry.color) return found.add(std::move(entry));
+    }
+    if (channels) return addColored(found, std::move(entry), *channels);
+    if (color != nullptr) {
+        found.leaveColorOut("label " + std::to_string(key),
+                            color->is_string() ? color->get<std::string>() : "no text or numbers");
+    }
+    found.add(std::move(entry));
 }
 
 LabelTable decodeList(const Json& list) {
@@ -103,14 +98,14 @@ LabelTable decodeList(const Json& list) {
             each.is_object() ? member(each, {"index", "key", "Key", "value", "id", "labelValue"})
                              : nullptr;
         if (key == nullptr) refuseKind("its list holds something without an index");
-        found.add(entryOf(keyOf(*key), each));
+        addEntry(found, keyOf(*key), each);
     }
     return found.finish();
 }
 
 LabelTable decodeByValue(const Json& object) {
     Collector found("JSON");
-    for (const auto& [key, each] : object.items()) found.add(entryOf(keyOf(Json(key)), each));
+    for (const auto& [key, each] : object.items()) addEntry(found, keyOf(Json(key)), each);
     return found.finish();
 }
 
@@ -140,17 +135,14 @@ LabelTable decodeNiivue(const Json& json) {
         LabelEntry entry;
         entry.value = hasIndices ? keyOf(list("I")[n]) : static_cast<std::int32_t>(n);
         entry.name = textOf(&names[n]);
-        LabelColor color{};
-        constexpr const char* kChannels[] = {"R", "G", "B"};
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double value = numbersOf(Json::array({list(kChannels[c])[n]})).front();
-            if (!(value >= 0 && value <= 255)) {
-                damaged("a colour is not within 0 to 255");
-            }
-            color[c] = static_cast<std::uint8_t>(std::lround(value));
+        const auto channels = channelsOf({&list("R")[n], &list("G")[n], &list("B")[n]});
+        if (channels) {
+            const std::string where = "label " + std::to_string(entry.value);
+            found.add(std::move(entry), *channels, where);
+        } else {
+            found.leaveColorOut("label " + std::to_string(entry.value), "no numbers");
+            found.add(std::move(entry));
         }
-        entry.color = color;
-        found.add(std::move(entry));
     }
     return found.finish();
 }

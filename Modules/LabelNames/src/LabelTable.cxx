@@ -9,6 +9,7 @@
 
 #include "Rows.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso {
 namespace {
@@ -46,10 +47,8 @@ LabelTable decodeLut(std::string_view bytes) {
 LabelTable decode(std::string_view bytes) {
     if (bytes.empty()) refuseKind("it is empty");
     if (bytes.size() == kLutBytes && !isText(bytes)) return decodeLut(bytes);
-    if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
-    if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
-        refuseKind("it is UTF-16; save it as UTF-8");
-    }
+    bytes = withoutByteOrderMark(bytes);
+    if (isUtf16(bytes)) throw FileError(faultOfText(bytes));
     if (!isText(bytes)) refuseKind("it is no text");
     const std::string text = toUtf8(bytes);
     const std::string_view start = trimmed(std::string_view(text).substr(0, 4096));
@@ -57,7 +56,7 @@ LabelTable decode(std::string_view bytes) {
     // XML names its own encoding
     if (start.front() == '<') return decodeXml(trimmed(bytes));
     if (start.front() == '{' || start.front() == '[') return decodeJson(text);
-    return isDelimited(text) ? decodeDelimited(text) : decodeSpaced(text);
+    return isDelimited(text) ? decodeDelimited(text) : decodeRows(text);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -32,18 +33,19 @@ std::string place(const Line& line);
 
 /// `word` as a label. \throws FileError "line 7: the index is x, must be a whole number
 /// that 32 bits hold"
-std::int32_t valueOf(std::string_view word, const Line& line);
+std::int32_t valueOf(std::string_view word, const Line& line, char separator = ',');
 
 /// The whole number that all of `word` is (also as "3.0", as some tables have it).
 std::optional<std::int64_t> wholeNumber(std::string_view word);
 /// The finite number that all of `word` is.
 std::optional<double> realNumber(std::string_view word);
 
-/// Red, green or blue, 0 to 255. \throws FileError naming the line
-std::uint8_t channelOf(std::string_view word, const Line& line);
+/// "#ff8000", "ff8000", "#f80", with opacity or without, "rgb(255, 128, 0)", or one of the common
+/// names of CSS; empty for other text.
+std::optional<LabelColor> parseColor(std::string_view text);
 
-/// "#ff8000" or "ff8000"; empty for other text.
-std::optional<LabelColor> parseHex(std::string_view text);
+/// Red, green and blue as a table has them.
+using Channels = std::array<double, 3>;
 
 /// Collects entries; those listed twice become a warning.
 class Collector {
@@ -52,24 +54,40 @@ public:
 
     /// Names lose blanks around them and control characters.
     void add(LabelEntry entry);
+    /// The same with a colour of 0 to 255, or of 0 to 1 where all of the table's are: finish()
+    /// looks.
+    void add(LabelEntry entry, const Channels& channels, const std::string& where);
+    /// A colour is for show: one that can't be read becomes a warning.
+    /// \param where  "line 7" or "label 7"
+    void leaveColorOut(const std::string& where, std::string_view text);
 
-    /// Entries by value. \throws FileError  no entry
-    LabelTable finish();
+    /// Entries by value. \param areParts  channels are 0 to 1 even if all are whole numbers
+    /// \throws FileError  no entry
+    LabelTable finish(bool areParts = false);
 
 private:
+    struct Raw {
+        std::int32_t value;
+        Channels channels;
+        std::string where;
+    };
+    void scaleColors(bool areParts);
+
     LabelTable table_;
     std::map<std::int32_t, std::size_t> places_;
-    std::int64_t repeats_ = 0;
+    std::vector<Raw> raws_;
+    std::int64_t repeats_ = 0, unread_ = 0;
     std::int32_t firstRepeat_ = 0;
+    std::string firstUnread_;
 };
 
 // One a family of formats. They throw FileError without the file's name.
-LabelTable decodeDelimited(std::string_view text);  ///< one separator between fields
-LabelTable decodeSpaced(std::string_view text);     ///< words with blanks between
+LabelTable decodeDelimited(std::string_view text);  ///< a header names the columns
+LabelTable decodeRows(std::string_view text);       ///< the columns say what they are
 LabelTable decodeXml(std::string_view text);
 LabelTable decodeJson(std::string_view text);
 
-/// True if the first line of `text` has fields with a separator between them.
+/// True if the first line of `text` names columns, among them an index and a name.
 bool isDelimited(std::string_view text);
 
 }  // namespace adaptiso::labelnames

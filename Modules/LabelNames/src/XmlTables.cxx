@@ -41,7 +41,9 @@ public:
 
     LabelTable finish() const {
         Collector found(isGifti ? "GIFTI" : "FSL");
-        for (const auto& [attributes, name] : rows_) found.add(entryOf(attributes, name));
+        for (const auto& [attributes, name] : rows_) {
+            found.add(entryOf(attributes, name, found));
+        }
         return found.finish();
     }
 
@@ -60,7 +62,8 @@ private:
         return static_cast<std::int32_t>(*value);
     }
 
-    LabelEntry entryOf(const Attributes& attributes, const std::string& name) const {
+    LabelEntry entryOf(const Attributes& attributes, const std::string& name,
+                       Collector& found) const {
         LabelEntry entry;
         entry.name = name;
         if (!isGifti) {
@@ -77,9 +80,8 @@ private:
             if (at == attributes.end()) return entry;
             const std::optional<double> part = realNumber(at->second);
             if (!part || *part < 0 || *part > 1) {
-                damaged("the " + lowerCase(kChannels[n]) + " of label " +
-                        std::to_string(entry.value) + " is " + printable(at->second) +
-                        ", must be 0 to 1");
+                found.leaveColorOut("label " + std::to_string(entry.value), at->second);
+                return entry;
             }
             color[n] = static_cast<std::uint8_t>(*part * 255 + 0.5);
         }

@@ -68,6 +68,22 @@ TEST_F(FindLabelTables, PassesOverWhatIsNoTableAndTellsOfFaults) {
     EXPECT_TRUE(found.table.entries.empty());
 }
 
+TEST_F(FindLabelTables, WarnsOfColumnsThatAreNotKnownAndOfUtf16) {
+    const auto textFor = [&] {
+        const FoundLabelTables found = findLabelTables(folder_ / "y.nii");
+        EXPECT_TRUE(found.table.entries.empty());
+        return found.table.warnings.empty() ? "none" : found.table.warnings[0].line();
+    };
+    write("y.txt", "0 1000\n5 2000\n");  // b-values, say
+    EXPECT_EQ(textFor(), "none");
+    write("y.txt", "1 2001 Precentral_L\n2 2002 Precentral_R\n");
+    EXPECT_NE(textFor().find("names are not used: y.txt: its columns"), std::string::npos);
+    write("y.txt", std::string("\xFF\xFE"
+                               "1\0 \0a\0",
+                               8));
+    EXPECT_NE(textFor().find("y.txt: is text in UTF-16; save it as UTF-8"), std::string::npos);
+}
+
 TEST_F(FindLabelTables, ByInheritanceInADataset) {
     const std::string anat = "sub-01/anat/";
     const std::string image = anat + "sub-01_space-T1w_desc-aseg_dseg.nii.gz";

@@ -1,6 +1,7 @@
 // Each format as its program writes it, what tells formats apart, and what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <random>
 #include <set>
@@ -100,6 +101,146 @@ TEST(LabelTable, ReadsMricronsColors) {
     EXPECT_THROW(decoded(std::string(768, '\0')), NoLabelTable);
 }
 
+TEST(LabelTable, ReadsFreeSurfersTypesOfTissue) {
+    // FreeSurferColorLUT.txt of 8.0.0 has them in some rows, gtmseg.ctab in all
+    const LabelTable some = decoded(
+        "#No. Label Name:                            R   G   B   A\n"
+        "17  Left-Hippocampus                220 216  20 0\n18 Left-Amygdala 103 255 255 0\n"
+        "819 Left-HypoThal-noMB           0  80   0 0 2\n820 Right-HypoThal-noMB  15 165 15 0 0\n");
+    EXPECT_EQ(some.format, "FreeSurfer");
+    EXPECT_EQ(entryOf(some, 17),
+              (LabelEntry{17, "Left-Hippocampus", "", LabelColor{220, 216, 20}}));
+    EXPECT_EQ(entryOf(some, 819),
+              (LabelEntry{819, "Left-HypoThal-noMB", "", LabelColor{0, 80, 0}}));
+    EXPECT_EQ(entryOf(some, 820).name, "Right-HypoThal-noMB");
+    const LabelTable all = decoded("0 Unknown 0 0 0 0 0\n17 Left-Hippocampus 220 216 20 0 2\n");
+    EXPECT_EQ(entryOf(all, 17), (LabelEntry{17, "Left-Hippocampus", "", LabelColor{220, 216, 20}}));
+    EXPECT_EQ(entryOf(all, 0).name, "Unknown");
+    // the name ends in a number, and opacity is the same in all rows
+    for (const char* const opacity : {"0", "255"}) {
+        const std::string o = opacity;
+        const LabelTable areas = decoded("1 Area 44 200 30 40 " + o + "\n2 Area 45 10 20 0 " + o +
+                                         "\n3 Insula 1 2 3 " + o + "\n");
+        EXPECT_EQ(entryOf(areas, 1), (LabelEntry{1, "Area 44", "", LabelColor{200, 30, 40}}));
+        EXPECT_EQ(entryOf(areas, 2), (LabelEntry{2, "Area 45", "", LabelColor{10, 20, 0}}));
+    }
+}
+
+TEST(LabelTable, ReadsColoursBeforeNames) {
+    const LabelTable parts = decoded(
+        "1 0.47059 0.070588 0.51373 7Networks_LH_Vis_1\n2 0 1 0 3rd Ventricle\n3 0 0 1 44\n");
+    EXPECT_EQ(parts.format, "FSLeyes");
+    EXPECT_EQ(entryOf(parts, 1),
+              (LabelEntry{1, "7Networks_LH_Vis_1", "", LabelColor{120, 18, 131}}));
+    EXPECT_EQ(entryOf(parts, 2), (LabelEntry{2, "3rd Ventricle", "", LabelColor{0, 255, 0}}));
+    EXPECT_EQ(entryOf(parts, 3).name, "44");
+    EXPECT_EQ(entryOf(decoded("1 1 0 0 Left\n2 0 0 1 Right\n"), 1).color, kRed);
+    EXPECT_EQ(entryOf(decoded("1 255 128 0 Left Femur\n2 0 0 1 b\n"), 1),
+              (LabelEntry{1, "Left Femur", "", kOrange}));
+    EXPECT_EQ(entryOf(decoded("1 255 128 0 255 Left Femur\n2 0 0 1 255 b\n"), 1),
+              (LabelEntry{1, "Left Femur", "", kOrange}));
+    EXPECT_EQ(entryOf(decoded("1;255;128;0;Left Femur\n2;0;0;1;b\n"), 1),
+              (LabelEntry{1, "Left Femur", "", kOrange}));
+    EXPECT_NE(refusalOf("1 0.1 0.2 0.3 a\n2 0.1 0.2 b\n3 0 0 0 c\n").find("line 2"),
+              std::string::npos);
+}
+
+TEST(LabelTable, ReadsTablesWithoutAHeaderByTheirColumns) {
+    for (const char separator : {' ', '\t', ',', ';'}) {
+        const auto row = [&](std::string text) {
+            std::ranges::replace(text, ' ', separator);
+            return text;
+        };
+        const LabelTable table = decoded(row("1 Femur_L 255 128 0\n2 Femur_R 1 2 3\n"));
+        EXPECT_EQ(entryOf(table, 1), (LabelEntry{1, "Femur_L", "", kOrange})) << separator;
+        EXPECT_EQ(entryOf(decoded(row("1 Femur_L\n2 Femur_R\n")), 2),
+                  (LabelEntry{2, "Femur_R", "", {}}))
+            << separator;
+    }
+    EXPECT_EQ(entryOf(decoded("1\tArea 44\t255\t128\t0\n2\tArea 45\t1\t2\t3\n"), 1),
+              (LabelEntry{1, "Area 44", "", kOrange}));
+    EXPECT_EQ(entryOf(decoded("1 \"Left Femur\" 255 128 0 255\n2 b 1 2 3 255\n"), 1),
+              (LabelEntry{1, "Left Femur", "", kOrange}));
+    EXPECT_EQ(entryOf(decoded("1 Femur 1 0.502 0\n2 b 0 0.25 1\n"), 1).color, kOrange);
+    EXPECT_EQ(entryOf(decoded("1 Left Femur #ff8000\n2 b #000000\n"), 1),
+              (LabelEntry{1, "Left Femur", "", kOrange}));
+    EXPECT_EQ(entryOf(decoded("1 Femur 255 128 0 0  # the thigh\n2 b 1 2 3 0 #shin\n"), 2),
+              (LabelEntry{2, "b", "", LabelColor{1, 2, 3}}));
+    EXPECT_EQ(entryOf(decoded("1 Lesion #1\n2 Lesion #2\n"), 2).name, "Lesion #2");
+}
+
+TEST(LabelTable, ReadsMrtrixAndAalAndWorkbench) {
+    const LabelTable mrtrix = decoded(
+        "#ROI  short  long  R G B A\n1  L.BSTS  ctx-lh-bankssts  255 128 0 255\n"
+        "2  L.CACG  ctx-lh-caudalanteriorcingulate  125 100 160 255\n");
+    EXPECT_EQ(entryOf(mrtrix, 1), (LabelEntry{1, "ctx-lh-bankssts", "L.BSTS", kOrange}));
+    EXPECT_EQ(entryOf(decoded("FAG\tPrecentral_L\t2001\nFAD\tPrecentral_R\t2002\n"), 2001),
+              (LabelEntry{2001, "Precentral_L", "FAG", {}}));
+    const LabelTable workbench = decoded("Left Femur\n1 255 128 0 255\nPelvis\n7 0 0 255 255\n");
+    EXPECT_EQ(workbench.format, "Connectome Workbench");
+    EXPECT_EQ(entryOf(workbench, 1), (LabelEntry{1, "Left Femur", "", kOrange}));
+    EXPECT_EQ(entryOf(workbench, 7).name, "Pelvis");
+}
+
+TEST(LabelTable, ReadsHeadersOfOtherPrograms) {
+    // CAT12's atlases, ANTs' and TotalSegmentator's lists
+    EXPECT_EQ(entryOf(decoded("ROIid;ROIabbr;ROIname\n3;l3thVen;Left 3th Ventricle\n"), 3),
+              (LabelEntry{3, "Left 3th Ventricle", "l3thVen", {}}));
+    EXPECT_EQ(entryOf(decoded("Label,Name\n3,\"Femur, left\"\n"), 3).name, "Femur, left");
+    EXPECT_EQ(entryOf(decoded("Index,TotalSegmentator name\n1,spleen\n"), 1).name, "spleen");
+    EXPECT_EQ(entryOf(decoded("index;name;r;g;b\n1;a;1,0;0,502;0,0\n2;b;0;0,5;0\n;;;;\n"), 1).color,
+              kOrange)
+        << "decimal commas";
+    EXPECT_EQ(entryOf(decoded("\"index\"\t\"name\"\n1\t\"Left Femur\"\n"), 1).name, "Left Femur");
+    EXPECT_EQ(entryOf(decoded("index\tname\n1\t'=HYPERLINK(\"x\")\n"), 1).name,
+              "=HYPERLINK(\"x\")");
+}
+
+// Numbers that stand beside a name are no part of it.
+TEST(LabelTable, RefusesColumnsThatItDoesNotKnow) {
+    for (const char* const text :
+         {"1 4 Left-Lateral-Ventricle\n2 5 Left-Inf-Lat-Vent\n",
+          "1 Precentral_L 2001 155\n2 Precentral_R 2002 172\n",
+          "1 4 7000 7000.0 Ventricle 20 4 1 40 39\n2 5 80 81.0 Vent 21 4 1 40 39\n",
+          "1 a 1 2 3 4 5 6 7\n2 b 1 2 3 4 5 6 7\n"}) {
+        EXPECT_NE(refusalOf(text).find("columns are those of no table"), std::string::npos) << text;
+    }
+}
+
+TEST(LabelTable, KeepsNamesWhoseColourCannotBeRead) {
+    const LabelTable table = decoded(
+        "index\tname\tcolor\n1\ta\tred\n2\tb\t#f80\n3\tc\trgb(255, 128, 0)\n4\td\treddish\n"
+        "5\te\t#ff8000\n6\tf\t#ff800080\n7\tg\t\n8\th\tn/a\n");
+    EXPECT_EQ(entryOf(table, 1), (LabelEntry{1, "a", "", kRed}));
+    EXPECT_EQ(entryOf(table, 2).color, (LabelColor{255, 136, 0}));
+    for (const int value : {3, 5, 6}) EXPECT_EQ(entryOf(table, value).color, kOrange) << value;
+    for (const int value : {4, 7, 8}) EXPECT_EQ(entryOf(table, value).color, std::nullopt) << value;
+    EXPECT_EQ(entryOf(table, 4).name, "d");
+    ASSERT_EQ(table.warnings.size(), 1U);
+    EXPECT_EQ(table.warnings[0].code, "colors-not-read");
+    EXPECT_NE(table.warnings[0].text.find("that of line 5 is 'reddish'"), std::string::npos)
+        << table.warnings[0].text;
+    for (const char* const text :
+         {"1 a 255 0 0 0\n2 b 1 2 300 0\n3 c 1 2 3 0\n", "1 255 0 0 a\n2 1 2 300 b\n3 1 2 3 c\n",
+          "LabelValue,Name,Color_R,Color_G,Color_B\n1,a,255,0,0\n2,b,1,x,2\n3,c,1,2,3\n",
+          "1 255 0 0 1 1 1 \"a\"\n2 1 -2 3 1 1 1 \"b\"\n3 1 2 3 1 1 1 \"c\"\n",
+          R"({"1": {"name": "a", "color": "red"}, "2": {"name": "b", "color": "no"}})",
+          R"([{"index": 1, "name": "a", "rgb": [255, 0, 0]},
+              {"index": 2, "name": "b", "rgb": [1, 2, 300]}])",
+          R"({"R": [255, 1], "G": [0, "x"], "B": [0, 2], "I": [1, 2], "labels": ["a", "b"]})",
+          "<GIFTI><LabelTable><Label Key=\"1\" Red=\"1\" Green=\"0\" Blue=\"0\">a</Label>"
+          "<Label Key=\"2\" Red=\"1\" Green=\"2\" Blue=\"0\">b</Label></LabelTable></GIFTI>"}) {
+        const LabelTable kept = decoded(text);
+        EXPECT_EQ(entryOf(kept, 1), (LabelEntry{1, "a", "", kRed})) << text;
+        EXPECT_EQ(entryOf(kept, 2), (LabelEntry{2, "b", "", {}})) << text;
+        ASSERT_EQ(kept.warnings.size(), 1U) << text;
+        EXPECT_EQ(kept.warnings[0].code, "colors-not-read");
+    }
+    // places in mm rather than colours
+    const LabelTable places = decoded("1 a -38.6 -5.6 50.9\n2 b 41.4 8.2 52.1\n3 c -18 35 -42\n");
+    EXPECT_EQ(entryOf(places, 2), (LabelEntry{2, "b", "", {}}));
+}
+
 TEST(LabelTable, ReadsGifti) {
     const LabelTable table = decoded(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GIFTI Version=\"1.0\"><MetaData/>\n"
@@ -158,9 +299,10 @@ TEST(LabelTable, TellsOfValuesListedTwice) {
 TEST(LabelTable, NamesTheLineThatIsWrong) {
     EXPECT_NE(refusalOf("index\tname\n1\ta\nx\tb\n").find("x: line 3: the index is 'x'"),
               std::string::npos);
-    EXPECT_NE(refusalOf("index\tname\tcolor\n1\ta\tred\n").find("line 2: the colour is 'red'"),
-              std::string::npos);
-    EXPECT_NE(refusalOf("# c\n1 a 1 2 3 0\n2 b 1 2 300 0\n").find("line 3: a colour has '300'"),
+    EXPECT_NE(
+        refusalOf("1 a 1 2 3 0\n1.5 b 1 2 3 0\n3 c 1 2 3 0\n").find("line 2: the index is '1.5'"),
+        std::string::npos);
+    EXPECT_NE(refusalOf("index\tname\nn/a\ta\n").find("line 2: the index is ''"),
               std::string::npos);
     EXPECT_NE(refusalOf("index\tname\n4294967296\ta\n").find("32 bits"), std::string::npos);
     EXPECT_NE(refusalOf("index\tname\n").find("lists no label"), std::string::npos);
@@ -171,10 +313,8 @@ TEST(LabelTable, RefusesWhatIsNoTable) {
     for (const std::string& text :
          {std::string(), std::string("   \n"), std::string("hello\nworld\n"), std::string("{}"),
           std::string("{\"Manufacturer\": \"x\"}"), std::string("{\"a\""), std::string("[1, 2]"),
-          std::string("<svg/>"), std::string("# only\n"),
-          std::string("\xff\xfe"
-                      "1\0",
-                      4),
+          std::string("<svg/>"), std::string("# only\n"), std::string("0 1000\n5 1000\n"),
+          std::string("1 0.5 0.5 0.5\n2 0.1 0.2 0.3\n"), std::string("0 0 0 0 255\n"),
           std::string(1000, '\0')}) {
         EXPECT_THROW(decoded(text), NoLabelTable) << text;
     }
