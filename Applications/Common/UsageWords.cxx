@@ -119,6 +119,28 @@ std::string nameOf(const CLI::Option& option) {
     return isLong ? "--" + option.get_lnames().front() : option.get_name(true);
 }
 
+/// CLI11 takes "=x" of "-o=x" and of "-qo=x" for the value of -o, and "utput" of "-output".
+void refuseMistakenLetters(const CLI::App& app, std::string_view word) {
+    if (!word.starts_with('-') || word.starts_with("--")) return;
+    const std::string whole = "-" + std::string(beforeEquals(word));
+    if (word.size() > 2 && optionNamed(app, whole) != nullptr) {
+        throw UsageError(std::string(beforeEquals(word)) +
+                         ": there is no such option; did you mean " + whole + "?");
+    }
+    for (std::size_t n = 1; n < word.size(); ++n) {
+        const std::string letter = {'-', word[n]};
+        const CLI::Option* const option = optionNamed(app, letter);
+        if (option == nullptr) return;
+        if (!takesValue(*option)) continue;
+        const std::string_view value = word.substr(n + 1);
+        if (!value.starts_with('=')) return;
+        const std::string name = nameOf(*option),
+                          given = value == "=" ? valueName(*option) : shown(value.substr(1));
+        throw UsageError(name + ": no = goes between " + letter + " and its value; give " + letter +
+                         " " + given + " or " + name + "=" + given);
+    }
+}
+
 }  // namespace
 
 std::string shown(std::string_view text) {
@@ -174,6 +196,7 @@ void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* arg
     for (int n = 1; n < argc; ++n) {
         const std::string_view word = argv[n], name = beforeEquals(word);
         if (word == "--") return;
+        refuseMistakenLetters(app, word);
         if (word.empty() && !positionals(app).empty()) {
             throw UsageError(positionals(app) + ": its value is empty");
         }
