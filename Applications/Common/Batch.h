@@ -101,6 +101,13 @@ std::vector<RunRecord> runRuns(const BatchProgram& program, const std::vector<Pl
 /// Names an input.
 using NameInput = std::function<std::string(const std::filesystem::path&)>;
 
+/// The items of a list's text: an input a line, with a name after a tab where one is given; with
+/// `areOneItem` the surfaces of one head, with tabs between.
+/// \param option  "--list heads.txt", for messages
+/// \throws InvalidInput, FileError
+std::vector<BatchItem> listedItems(std::string_view text, const std::string& option,
+                                   bool areOneItem, const NameInput& nameOf);
+
 /// The items of a program's command line: its inputs and those of --list.
 /// \param areOneItem  the inputs, and those of a line of --list, are one item
 /// \throws InvalidInput, FileError

@@ -2,8 +2,8 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <iterator>
 #include <map>
-#include <sstream>
 #include <string_view>
 #include <thread>
 
@@ -11,8 +11,11 @@
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
+#include "Common/UsageWords.h"
 #include "Common/Verdict.h"
 #include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/TextCells.h"
+#include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso {
 namespace {
@@ -38,41 +41,14 @@ std::string folderName(const fs::path& file) {
     return folder.has_filename() ? folder.filename().string() : "surfaces";
 }
 
-/// An input a line, with a name after a tab where one is given; with `areOneItem` the surfaces of
-/// one head, with tabs between.
-std::vector<BatchItem> readList(const fs::path& list, bool areOneItem, const NameInput& nameOf) {
-    const std::string option = "--list " + list.string();
+std::string textOf(const fs::path& list, const std::string& option) {
     std::ifstream file;
     if (list != "-") file.open(list);
     if (!file || fs::is_directory(list)) throw FileError(option + ": can't be read");
     std::istream& in = list == "-" ? std::cin : file;
-    std::vector<BatchItem> items;
-    for (std::string line; std::getline(in, line);) {
-        if (line.ends_with('\r')) line.pop_back();
-        if (line.starts_with('#')) continue;
-        std::vector<std::string> parts;
-        std::istringstream stream(line);
-        for (std::string part; std::getline(stream, part, '\t');) {
-            if (!part.empty()) parts.push_back(part);
-        }
-        if (parts.empty()) continue;
-        BatchItem item;
-        if (areOneItem) {
-            item = {folderName(parts[0]), {parts.begin(), parts.end()}};
-        } else if (parts.size() <= 2) {
-            item = {parts.size() == 2 ? parts[1] : nameOf(parts[0]), {parts[0]}};
-        } else {
-            throw InvalidInput(option + ": '" + line +
-                               "' has more than two parts: an input and its name");
-        }
-        if (item.name.find('/') != std::string::npos || item.name == "." || item.name == "..") {
-            throw InvalidInput(option + ": '" + item.name + "' is no name for files");
-        }
-        items.push_back(std::move(item));
-    }
+    std::string text{std::istreambuf_iterator<char>(in), {}};
     if (in.bad()) throw FileError(option + ": can't be read");
-    if (items.empty()) throw InvalidInput(option + ": names no input");
-    return items;
+    return text;
 }
 
 void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
@@ -94,6 +70,36 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
 
 }  // namespace
 
+std::vector<BatchItem> listedItems(std::string_view text, const std::string& option,
+                                   bool areOneItem, const NameInput& nameOf) {
+    if (const std::string fault = faultOfText(text); !fault.empty()) {
+        throw FileError(option + ": " + fault);
+    }
+    std::vector<BatchItem> items;
+    TextLines lines(text);
+    while (const auto line = lines.next()) {
+        if (line->starts_with('#')) continue;
+        std::vector<std::string> parts = cellsOf(*line, '\t').value();
+        std::erase(parts, "");
+        if (parts.empty()) continue;
+        BatchItem item;
+        if (areOneItem) {
+            item = {folderName(parts[0]), {parts.begin(), parts.end()}};
+        } else if (parts.size() <= 2) {
+            item = {parts.size() == 2 ? parts[1] : nameOf(parts[0]), {parts[0]}};
+        } else {
+            throw InvalidInput(option + ": " + linePlace(lines.number()) + shown(*line) +
+                               " has more than two parts: an input and its name");
+        }
+        if (item.name.find('/') != std::string::npos || item.name == "." || item.name == "..") {
+            throw InvalidInput(option + ": '" + item.name + "' is no name for files");
+        }
+        items.push_back(std::move(item));
+    }
+    if (items.empty()) throw InvalidInput(option + ": names no input");
+    return items;
+}
+
 std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
                                       const std::vector<fs::path>& inputs, const NameInput& nameOf,
                                       bool areOneItem) {
@@ -103,7 +109,9 @@ std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
         for (const fs::path& input : inputs) items.push_back({nameOf(input), {input}});
     }
     if (!batch.list.empty()) {
-        for (BatchItem& item : readList(batch.list, areOneItem, nameOf)) {
+        const std::string option = "--list " + batch.list.string();
+        for (BatchItem& item :
+             listedItems(textOf(batch.list, option), option, areOneItem, nameOf)) {
             items.push_back(std::move(item));
         }
     }

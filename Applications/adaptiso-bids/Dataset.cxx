@@ -1,19 +1,15 @@
 #include "Dataset.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <cctype>
 #include <optional>
 #include <set>
-#include <span>
-#include <sstream>
 #include <system_error>
 
 #include "Common/CommonOptions.h"
+#include "SideFiles.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FoundFiles.h"
-#include "adaptiso/Core/ParseJson.h"
 
 namespace adaptiso::bids {
 
@@ -43,85 +39,22 @@ std::vector<fs::path> foldersIn(const fs::path& folder, const std::string& prefi
     return sorted(found);
 }
 
-/// "sub-01" of "01" and of "sub-01".
-std::string withPrefix(const std::string& label, const std::string& prefix) {
-    return label.starts_with(prefix) ? label : prefix + label;
+/// All of a file of the dataset; empty if it is missing.
+std::string textOf(const fs::path& root, const char* name) {
+    return readFoundFile(root / name, root).value_or("");
 }
 
-std::vector<std::string> splitAt(const std::string& text, char separator) {
-    std::vector<std::string> parts;
-    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
-        end = text.find(separator, begin);
-        parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+BidsIgnore ignoredIn(const fs::path& root) {
+    const fs::path file = root / ".bidsignore";
+    try {
+        return BidsIgnore(textOf(root, ".bidsignore"));
+    } catch (const FileError& fault) {
+        throw FileError(file.string() + ": " + fault.what());
     }
-    return parts;
 }
 
-/// Parts of `path` that are not empty.
-std::vector<std::string> partsOf(const std::string& path) {
-    std::vector<std::string> parts = splitAt(path, '/');
-    std::erase(parts, "");
-    return parts;
-}
-
-/// Matches the path or a folder above it; "**" stands for any number of folders.
-/// \pre no "**" follows another, so that the parts of `path` bound the depth and the ways to try
-bool fits(std::span<const std::string> pattern, std::span<const std::string> path) {
-    if (pattern.empty()) return true;
-    if (pattern[0] == "**" && fits(pattern.subspan(1), path)) return true;
-    if (path.empty()) return false;
-    if (pattern[0] == "**") return fits(pattern, path.subspan(1));
-    return fnmatch(pattern[0].c_str(), path[0].c_str(), 0) == 0 &&
-           fits(pattern.subspan(1), path.subspan(1));
-}
-
-/// The paths that .bidsignore of a dataset excludes, by the rules of .gitignore.
-class BidsIgnore {
-public:
-    explicit BidsIgnore(const fs::path& root) : root_(root) {
-        std::istringstream file(readFoundFile(root / ".bidsignore", root).value_or(""));
-        for (std::string line; std::getline(file, line);) {
-            while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-            if (line.empty() || line[0] == '#') continue;
-            Rule rule{{}, line[0] == '!'};
-            if (rule.isException) line.erase(0, 1);
-            const std::size_t slash = line.find('/');
-            rule.pattern = partsOf(line);
-            // without a slash, except at its end, it is a name anywhere
-            if (slash == std::string::npos || slash + 1 == line.size()) {
-                rule.pattern.insert(rule.pattern.begin(), "**");
-            }
-            const auto isBoth = [](const std::string& a, const std::string& b) {
-                return a == "**" && b == "**";
-            };
-            const auto repeats = std::ranges::unique(rule.pattern, isBoth);
-            rule.pattern.erase(repeats.begin(), repeats.end());
-            rules_.push_back(std::move(rule));
-        }
-    }
-    const fs::path& root() const { return root_; }
-    /// \param path  in the dataset, begun as its root is
-    bool contains(const fs::path& path) const {
-        const std::vector<std::string> parts =
-            partsOf(path.lexically_relative(root_).generic_string());
-        bool isIgnored = false;
-        for (const Rule& rule : rules_) {
-            if (fits(rule.pattern, parts)) isIgnored = !rule.isException;
-        }
-        return isIgnored;
-    }
-
-private:
-    struct Rule {
-        std::vector<std::string> pattern;  ///< by folders
-        bool isException = false;          ///< "!"
-    };
-    fs::path root_;
-    std::vector<Rule> rules_;
-};
-
-void addImages(const fs::path& folder, const fs::path& target, const BidsImages& images,
-               const BidsIgnore& ignored, std::vector<BatchItem>& items) {
+void addImages(const fs::path& root, const fs::path& folder, const fs::path& target,
+               const BidsImages& images, const BidsIgnore& ignored, std::vector<BatchItem>& items) {
     std::vector<fs::path> files;
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder / "anat", error)) {
@@ -131,10 +64,11 @@ void addImages(const fs::path& folder, const fs::path& target, const BidsImages&
         const std::string name = file.filename().string();
         for (const char* const type : {".nii", ".nii.gz"}) {
             const std::string ending = "_" + images.suffix + type;
-            if (!name.ends_with(ending) || name.starts_with(".") || ignored.contains(file))
+            if (!name.ends_with(ending) || name.starts_with(".") ||
+                ignored.contains(file.lexically_relative(root)))
                 continue;
             BatchItem item{name.substr(0, name.size() - ending.size()), {file}, target / "anat"};
-            if (fs::exists(file, error) && !liesIn(file, ignored.root())) {
+            if (fs::exists(file, error) && !liesIn(file, root)) {
                 item.fault =
                     "is, or lies behind, a link to outside of its dataset; put the file "
                     "itself there";
@@ -150,29 +84,6 @@ void addImages(const fs::path& folder, const fs::path& target, const BidsImages&
     }
 }
 
-/// participant_id in participants.tsv ("sub-01"); empty if there is no such table.
-std::optional<std::set<std::string>> listedParticipants(const fs::path& root) {
-    std::istringstream file(readFoundFile(root / "participants.tsv", root).value_or(""));
-    std::string line;
-    if (!std::getline(file, line)) return std::nullopt;
-    if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-    const auto cells = [](std::string row) {
-        if (row.ends_with('\r')) row.pop_back();
-        return splitAt(row, '\t');
-    };
-    const std::vector<std::string> header = cells(line);
-    const auto column = std::ranges::find(header, "participant_id") - header.begin();
-    if (column == std::ssize(header)) return std::nullopt;
-    std::set<std::string> listed;
-    while (std::getline(file, line)) {
-        const std::vector<std::string> row = cells(line);
-        if (column >= std::ssize(row)) continue;
-        const std::string& id = row[static_cast<std::size_t>(column)];
-        if (!id.empty()) listed.insert(withPrefix(id, "sub-"));
-    }
-    return listed;
-}
-
 /// The folders sub-* of `participants`, labels with or without "sub-"; empty: all.
 /// \throws InvalidInput  `root` is no BIDS dataset, or there is no such participant
 std::vector<fs::path> subjectsOf(const fs::path& root,
@@ -182,8 +93,10 @@ std::vector<fs::path> subjectsOf(const fs::path& root,
     }
     if (participants.empty()) {
         std::vector<fs::path> found = foldersIn(root, "sub-");
-        const BidsIgnore ignored(root);
-        std::erase_if(found, [&](const fs::path& folder) { return ignored.contains(folder); });
+        const BidsIgnore ignored = ignoredIn(root);
+        std::erase_if(found, [&](const fs::path& folder) {
+            return ignored.contains(folder.lexically_relative(root));
+        });
         return found;
     }
     std::vector<fs::path> folders;
@@ -204,13 +117,11 @@ bool isLabel(std::string_view text) {
 }
 
 void requireDescription(const fs::path& root) {
-    const auto said = parseJson<Json>(readFoundFile(root / kDescription, root).value_or(""));
-    for (const char* const key : {"Name", "BIDSVersion"}) {
-        if (said.is_object() && said.contains(key) && said[key].is_string()) continue;
-        throw InvalidInput(root.string() +
-                           ": is no valid BIDS dataset: dataset_description.json has no " + key +
-                           "; add it, or give --skip-bids-validation");
-    }
+    const std::string key = missingKeyOf(textOf(root, kDescription));
+    if (key.empty()) return;
+    throw InvalidInput(root.string() +
+                       ": is no valid BIDS dataset: dataset_description.json has no " + key +
+                       "; add it, or give --skip-bids-validation");
 }
 
 /// Checks "sub-01_ses-2_acq-hi" in the folder sub-01/ses-2.
@@ -244,8 +155,16 @@ void checkSubject(const fs::path& subject, std::vector<std::string>& faults) {
 
 /// Warns where participants.tsv and the folders differ.
 void warnOfList(const BidsOptions& options, ChosenSubjects& chosen) {
-    const auto listed = listedParticipants(options.dataset);
-    if (!listed) return;
+    constexpr const char* kList = "participants.tsv";
+    const std::string text = textOf(options.dataset, kList);
+    if (text.empty()) return;
+    std::set<std::string> listed;
+    try {
+        listed = participantsIn(text);
+    } catch (const FileError& fault) {
+        chosen.warnings.push_back({"participants-not-read", fault.what(), kList});
+        return;
+    }
     std::set<std::string> there;
     for (const fs::path& folder : chosen.folders) there.insert(folder.filename().string());
     const auto warn = [&](Warning warning, const std::set<std::string>& some,
@@ -260,12 +179,12 @@ void warnOfList(const BidsOptions& options, ChosenSubjects& chosen) {
         if (count == 0) return;
         if (count > 5) names += " and " + std::to_string(count - 5) + " more";
         warning.text += names;
-        warning.file = "participants.tsv";
+        warning.file = kList;
         chosen.warnings.push_back(std::move(warning));
     };
-    warn(Warning{"subject-not-listed", "does not list "}, there, *listed);
+    warn(Warning{"subject-not-listed", "does not list "}, there, listed);
     if (options.participants.empty()) {
-        warn(Warning{"subject-not-there", "lists participants without a folder: "}, *listed, there);
+        warn(Warning{"subject-not-there", "lists participants without a folder: "}, listed, there);
     }
 }
 
@@ -275,15 +194,16 @@ std::vector<BatchItem> bidsImagesOf(const fs::path& subject,
                                     const std::vector<std::string>& sessions,
                                     const fs::path& target, const BidsImages& images) {
     std::vector<BatchItem> items;
-    const BidsIgnore ignored(subject.parent_path());
-    if (sessions.empty()) addImages(subject, target, images, ignored, items);
+    const fs::path root = subject.parent_path();
+    const BidsIgnore ignored = ignoredIn(root);
+    if (sessions.empty()) addImages(root, subject, target, images, ignored, items);
     for (const fs::path& session : foldersIn(subject, "ses-")) {
         const std::string name = session.filename().string();
         const bool isAsked = sessions.empty() ||
                              std::any_of(sessions.begin(), sessions.end(), [&](const auto& label) {
                                  return withPrefix(label, "ses-") == name;
                              });
-        if (isAsked) addImages(session, target / name, images, ignored, items);
+        if (isAsked) addImages(root, session, target / name, images, ignored, items);
     }
     return items;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Core/TextCells.h"
 
 namespace adaptiso::bids {
 namespace {
@@ -33,16 +34,7 @@ constexpr std::array<Column, kMeasures> kColumns{{
      "mm", true},
 }};
 
-/// A cell, n/a if empty as BIDS wants, without tabs and line ends.
-std::string cell(const std::string& text) {
-    if (text.empty()) return "n/a";
-    std::string clean = text;
-    for (char& c : clean) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    }
-    return clean;
-}
-
+/// n/a if empty, as BIDS wants.
 std::string cell(const std::optional<double>& value) {
     return value && std::isfinite(*value) ? formatNumber(*value) : "n/a";
 }
@@ -113,11 +105,11 @@ std::string qualityTable(const std::vector<QualityRow>& rows) {
     for (const QualityRow& row : rows) {
         for (const std::string& each : {row.participant, row.session, row.scan, row.product,
                                         row.part, row.name, toString(row.state), row.reason}) {
-            text += cell(each) + "\t";
+            text += writtenCell(each) + "\t";
         }
-        text += cell(row.check);
+        text += writtenCell(row.check);
         for (const std::optional<double>& value : row.measures) text += "\t" + cell(value);
-        text += "\t" + cell(row.outliers) + "\n";
+        text += "\t" + writtenCell(row.outliers) + "\n";
     }
     return text;
 }

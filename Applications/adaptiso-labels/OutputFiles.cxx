@@ -11,6 +11,7 @@
 #include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Core/TextCells.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -83,11 +84,6 @@ void writeTetrahedra(const LabelsRun& run, AtomicFolder& folder) {
     writeMsh41(mesh, regions, folder.place(kMsh41Name));
     writeVtu(mesh, folder.place(kVtuName));
     writeDgf(mesh, regions, folder.place(kDgfName));
-}
-
-/// A field of a table: tabs and line ends would end it.
-std::string field(const std::string& text) {
-    return text.empty() ? "n/a" : text;
 }
 
 /// "12" of "12.vtp", when that is the name of a region's file.
@@ -231,13 +227,14 @@ std::string regionsTable(const LabelsRun& run) {
             neighbours += (neighbours.empty() ? "" : ",") + std::to_string(contact.label);
         }
         for (const std::string& each :
-             {std::to_string(region.label), field(region.name), field(region.abbreviation),
-              hexText(region.color), std::to_string(region.voxels), formatNumber(measure.volumeMm3),
+             {std::to_string(region.label), writtenCell(region.name),
+              writtenCell(region.abbreviation), hexText(region.color),
+              std::to_string(region.voxels), formatNumber(measure.volumeMm3),
               formatNumber(measure.areaMm2), std::to_string(measure.triangles),
               std::to_string(measure.eulerCharacteristic), std::to_string(measure.components)}) {
             text += each + '\t';
         }
-        text += field(neighbours) + '\n';
+        text += writtenCell(neighbours) + '\n';
     }
     return text;
 }

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the small files of a BIDS dataset say.
+namespace adaptiso::bids {
+
+/// "sub-01" of "01" and of "sub-01".
+std::string withPrefix(const std::string& label, const std::string& prefix);
+
+/// Parts between separators; one where there is none.
+std::vector<std::string> splitAt(const std::string& text, char separator);
+
+/// The paths that .bidsignore of a dataset excludes, by the rules of .gitignore.
+class BidsIgnore {
+public:
+    /// \throws FileError  it is no text
+    explicit BidsIgnore(std::string_view text);
+    /// \param path  relative to the dataset's root
+    bool contains(const std::filesystem::path& path) const;
+
+private:
+    struct Rule {
+        std::vector<std::vector<std::string>> pattern;  ///< by folders, as elementsOf() gives them
+        bool isException = false;                       ///< "!"
+    };
+    std::vector<Rule> rules_;
+};
+
+/// participant_id in the text of participants.tsv, each with "sub-".
+/// \throws FileError  it is no text, or has no such column
+std::set<std::string> participantsIn(std::string_view text);
+
+/// "Name" or "BIDSVersion" where the text of dataset_description.json lacks it; empty if it has
+/// both.
+std::string missingKeyOf(std::string_view description);
+
+}  // namespace adaptiso::bids
