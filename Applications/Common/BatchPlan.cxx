@@ -11,7 +11,6 @@
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
-#include "Common/UsageWords.h"
 #include "Common/Verdict.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/TextCells.h"
@@ -70,36 +69,6 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
 
 }  // namespace
 
-std::vector<BatchItem> listedItems(std::string_view text, const std::string& option,
-                                   bool areOneItem, const NameInput& nameOf) {
-    if (const std::string fault = faultOfText(text); !fault.empty()) {
-        throw FileError(option + ": " + fault);
-    }
-    std::vector<BatchItem> items;
-    TextLines lines(text);
-    while (const auto line = lines.next()) {
-        if (line->starts_with('#')) continue;
-        std::vector<std::string> parts = cellsOf(*line, '\t').value();
-        std::erase(parts, "");
-        if (parts.empty()) continue;
-        BatchItem item;
-        if (areOneItem) {
-            item = {folderName(parts[0]), {parts.begin(), parts.end()}};
-        } else if (parts.size() <= 2) {
-            item = {parts.size() == 2 ? parts[1] : nameOf(parts[0]), {parts[0]}};
-        } else {
-            throw InvalidInput(option + ": " + linePlace(lines.number()) + shown(*line) +
-                               " has more than two parts: an input and its name");
-        }
-        if (item.name.find('/') != std::string::npos || item.name == "." || item.name == "..") {
-            throw InvalidInput(option + ": '" + item.name + "' is no name for files");
-        }
-        items.push_back(std::move(item));
-    }
-    if (items.empty()) throw InvalidInput(option + ": names no input");
-    return items;
-}
-
 std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
                                       const std::vector<fs::path>& inputs, const NameInput& nameOf,
                                       bool areOneItem) {
@@ -110,8 +79,9 @@ std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
     }
     if (!batch.list.empty()) {
         const std::string option = "--list " + batch.list.string();
+        const NameInput nameItem = areOneItem ? folderName : nameOf;
         for (BatchItem& item :
-             listedItems(textOf(batch.list, option), option, areOneItem, nameOf)) {
+             listedItems(textOf(batch.list, option), option, areOneItem, nameItem)) {
             items.push_back(std::move(item));
         }
     }

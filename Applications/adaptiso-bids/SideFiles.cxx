@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <span>
 
-#include "Common/Json.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/TextCells.h"
 #include "adaptiso/Core/TextLines.h"
+#include "adaptiso/Json/Json.h"
 
 namespace adaptiso::bids {
 namespace {

@@ -57,10 +57,21 @@ void addLabelSeeds(Seeds& seeds) {
     for (const char* const text :
          {"index\tname\tabbreviation\tcolor\n1\tGray Matter\tGM\t#ff0000\n2\tb\tn/a\tn/a\n",
           "LabelValue,Name,Color_R,Color_G,Color_B,Color_A\n1,\"a, \"\"b\"\"\",255,128,0,255\n",
-          "# LUT\n0 Unknown 0 0 0 0\r\n1001 ctx-lh 25 100 40 0\r\n", "1 a 1 2 3\n2 b 1 2 3\n",
+          "# LUT\n0 Unknown 0 0 0 0\r\n1001 ctx-lh 25 100 40 0\r\n",
+          "1 a 1 2 3\n2 b 1 2 3\n",
           "# Color table file x\n1 left_side 255 0 0 255\n",
-          "# ITK-SnAP\n 1 255 0 0 1 1 1 \"Label 1\"\n", "1 Precentral_L 2001\n2 b 2002\n",
-          "0\tUnclassified\n1\tc\xf4t\xe9 x\n", "1;a;2\n2;b;3\n",
+          "# ITK-SnAP\n 1 255 0 0 1 1 1 \"Label 1\"\n",
+          "1 Precentral_L 2001\n2 b 2002\n",
+          "0\tUnclassified\n1\tc\xf4t\xe9 x\n",
+          "1;a;2\n2;b;3\n",
+          "17 L 220 216 20 0\n819 Left-H 0 80 0 0 2\n",
+          "1 0.4 0.07 0.5 7N_Vis\n2 0 1 0 b\n",
+          "1 L.B ctx-lh 25 5 25 255\n2 L.C ctx-c 1 2 3 255\n",
+          "Left\n1 255 0 0 255\n",
+          "FAG\tPrecentral_L\t2001\nFAD\tb\t2002\n",
+          "1 \"a b\" #ff8000 # c\n2 d #000000\n",
+          "ROIid;ROIabbr;ROIname;r;g;b\n1;a;\"b;c\";0,5;0;1\n",
+          "index\tname\tcolor\n1\ta\trgb(1,2,3)\n",
           "<GIFTI><LabelTable><Label Key=\"1\" Red=\"1\" Green=\"0.5\" Blue=\"0\">a</Label>"
           "</LabelTable></GIFTI>",
           "<atlas><header><type>Label</type></header><data><label index=\"0\">a</label></data>"
@@ -84,6 +95,15 @@ void addLabelSeeds(Seeds& seeds) {
     for (const char* const text : {"01,2,10-20", "0-5--2,2147483647", "1Thalamus=10,49",
                                    "1a=1-3\nb=4\na=b=5,6", "21=0.33,2=0.0066", "2-7=1e-3"}) {
         seeds.add("lists", text);
+    }
+    for (const char* const text :
+         {"0a.nii\nscans/b.nii\tsecond\r\n# c\n", "1in.stl\tout.stl\n",
+          "2participant_id\tage\r\nsub-01\t3\n02\tn/a\n", "2age;participant_id\n3;\"sub-01\"\n",
+          "3/sub-01\n**/*_acq-[!a-c]*_*\nsub-0?/\n!sub-04/\n*a*a*a*b\n\\*\n",
+          R"(4{"Name": "a", "BIDSVersion": "1.8.0"})"}) {
+        std::string seed = text;
+        seed[0] = static_cast<char>(seed[0] - '0');
+        seeds.add("sides", seed);
     }
 }
 

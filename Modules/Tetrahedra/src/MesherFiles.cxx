@@ -30,7 +30,8 @@ std::string text(const Vec3& p) {
 /// Numbers between white space; lines that begin with '#' are passed over.
 class Words {
 public:
-    Words(std::string_view bytes, std::string_view name) : bytes_(bytes), name_(name) {}
+    Words(std::string_view bytes, std::string_view name)
+        : bytes_(withoutByteOrderMark(bytes)), name_(name) {}
 
     std::string_view next() {
         for (;;) {
