@@ -138,6 +138,19 @@ class Lists(BatchTest):
         self.assertTrue(self.path("out/a.stl").exists())
         self.assertTrue(self.path("out/second.stl").exists())
 
+    def test_of_any_program_are_read(self):
+        for number, text in enumerate((b"\xef\xbb\xbfa.nii\r\nb.nii\r\n", b"a.nii\rb.nii",
+                                       b"a.nii  \n   \nb.nii\t\n", b"\xef\xbb\xbf# scans\na.nii\nb.nii")):
+            with self.subTest(text):
+                self.path("list").write_bytes(text)
+                self.batch(OK, "--list", "list", "--iso", 100, "-o", "{name}.stl", "--output-dir",
+                           f"out{number}")
+                self.assertTrue(self.path(f"out{number}/a.stl").exists())
+                self.assertTrue(self.path(f"out{number}/b.stl").exists())
+        self.path("list").write_bytes("a.nii\n".encode("utf-16"))
+        self.assert_fails(BAD_INPUT, "--list list: is text in UTF-16; save it as UTF-8", "--list",
+                          "list", "--iso", 100)
+
     def test_from_stdin(self):
         lines = self.lines(OK, "--list", "-", "--iso", 100, input="a.nii\nb.nii\n")
         self.assertEqual([line["name"] for line in lines], ["a", "b"])

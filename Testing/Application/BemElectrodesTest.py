@@ -53,6 +53,20 @@ class Electrodes(BemTest):
         for line, place in zip(lines, self.table().values(), strict=True):
             self.assertLess(math.dist(tuple(map(float, line.split())), place), 1e-5)
 
+    def test_electrodes_without_a_place_are_left_out_with_a_warning(self):
+        self.write_bids()
+        path = self.path("sub-1_electrodes.tsv")
+        rows = path.read_text().replace("EOG\tn/a\tn/a\tn/a", "EOG\tNaN\t\tn/a")
+        path.write_text(rows + "ECG\t\t\t\tcup\n", encoding="utf-8-sig", newline="\r\n")
+        done = self.bem(*self.labels(), "--electrodes", "sub-1_electrodes.tsv", "-o", "model")
+        self.assertRegex(done.stderr, r"sub-1_electrodes.tsv: 2 of its \d+ points have no place and "
+                                      r"were left out: EOG, ECG")
+        self.assertEqual(set(self.table()), set(directions()))
+        self.assertEqual([w["code"] for w in self.report()["warnings"]], ["electrodes-left-out"])
+        path.write_text(rows + next(row for row in rows.splitlines()[1:]) + "\n")
+        self.fails(BAD_INPUT, "two of its points have the name '.*'; rename or remove one",
+                   *self.labels(), "--electrodes", "sub-1_electrodes.tsv", "-o", "m")
+
     def test_what_was_written_is_read_again(self):
         self.write_bids()
         self.bem(*self.labels(), "--electrodes", "sub-1_electrodes.tsv", *LANDMARKS, "-o", "model")

@@ -55,7 +55,9 @@ TEST(QualityTable, HasARowOfCellsForEveryColumnThatTheDictionaryNames) {
     QualityRow row;
     row.participant = "sub-01";
     row.reason = "tab\there\nand line";
+    row.name = "=1+1";
     row[Measure::AreaMm2] = 0.1;
+    row[Measure::VolumeMm3] = -1.5;
     const std::string text = qualityTable({row});
     const std::string head = text.substr(0, text.find('\n'));
     const std::string line = text.substr(head.size() + 1);
@@ -64,6 +66,8 @@ TEST(QualityTable, HasARowOfCellsForEveryColumnThatTheDictionaryNames) {
     EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1);
     EXPECT_NE(line.find("\ttab here and line\t"), std::string::npos);
     EXPECT_NE(line.find("\t0.1\t"), std::string::npos);
+    EXPECT_NE(line.find("\t'=1+1\t"), std::string::npos) << "no formula";
+    EXPECT_NE(line.find("\t-1.5\t"), std::string::npos) << "a number";
     EXPECT_EQ(qualityDictionary(3.5).size(),
               static_cast<std::size_t>(std::count(head.begin(), head.end(), '\t')) + 1);
 }

@@ -250,6 +250,23 @@ class Participants(BidsTest):
                          ["subject-not-listed", "subject-not-there"])
         self.assertEqual(self.bids(OK, "group", "--participant-label", "01", "02").stderr, "")
 
+    def test_side_files_of_any_program_are_read(self):
+        self.scan("sub-08/anat/sub-08_acq-bad", ball(24, 8))
+        ignored = "/sub-01\n**/*_acq-bad_*\nsub-0[3-6]/\nsub-02/anat/*\n/\n"
+        listed = "participant_id\tage\nsub-07\t3\nn/a\t4\n"
+        for text in ("\ufeff" + ignored, ignored.replace("\n", "\r\n"), ignored.replace("\n", "\r")):
+            self.study.joinpath(".bidsignore").write_bytes(text.encode())
+            self.assertEqual(set(self.told(code=CHECK_FAILED)), {"sub-07"})
+        self.study.joinpath(".bidsignore").write_bytes(ignored.encode("utf-16"))
+        done = self.bids(BAD_INPUT, "participant")
+        self.assertIn(".bidsignore: is text in UTF-16; save it as UTF-8", done.stderr)
+        self.study.joinpath(".bidsignore").unlink()
+        for text, said in (("\ufeff" + listed.replace("\n", "\r"), "does not list sub-01"),
+                           ("id\tage\n01\t3\n", "its first line names no column 'participant_id'")):
+            self.study.joinpath("participants.tsv").write_bytes(text.encode())
+            done = self.bids(OK, "participant", "--participant-label", "01")
+            self.assertIn(f"warning: participants.tsv: {said}", done.stderr)
+
     def test_content_that_is_not_fetched_fails_with_the_command(self):
         scan = self.study / "sub-02/anat/sub-02_T1w.nii"
         scan.unlink()

@@ -49,6 +49,18 @@ class WrongUsage(ApplicationTest):
     def test_unknown_options(self):
         self.refused("--frobnicate", "ball.nii", "--iso", "100", "--frobnicate")
 
+    # CLI11 would take "=a.vtp" and "utput" for the file's name
+    def test_no_equals_sign_goes_behind_a_letter(self):
+        for option in ("-o=a.vtp", "-qo=a.vtp"):
+            with self.subTest(option):
+                self.refused("--output: no = goes between -o and its value; give -o a.vtp or "
+                             "--output=a.vtp", "ball.nii", "--iso", "100", option)
+        self.refused("give -o OUT or", "ball.nii", "--iso", "100", "-o=")
+        self.refused("--quiet: takes no value", "ball.nii", "--iso", "100", "-q=1")
+        self.refused("-output: there is no such option; did you mean --output", "ball.nii", "--iso",
+                     "100", "-output", "a.vtp")
+        self.assertEqual(self.names(), ["ball.nii"])
+
     def test_two_inputs_for_one_output(self):
         self.refused("{name}", "ball.nii", "other.nii", "--iso", "100", "-o", "a.vtp")
 

