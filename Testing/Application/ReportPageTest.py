@@ -1,5 +1,7 @@
 """Report pages: what they hold, and what people see of them in a browser."""
 
+import base64
+import hashlib
 import html.parser
 import json
 import math
@@ -143,6 +145,17 @@ class Contents(ReportTest):
                     if meta.get("http-equiv") == "Content-Security-Policy"]
         self.assertEqual(len(policies), 1)
         self.assertIn("default-src 'none'", policies[0])
+        self.assertIn("webrtc 'block'", policies[0])
+
+    def test_only_the_scripts_of_the_page_may_run(self):
+        self.page("sound.off")
+        text = self.path("page.html").read_text()
+        policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
+        allowed = re.search(r"script-src ([^;]*);", policy)[1].split()
+        scripts = re.findall(r"<script>(.*?)</script>", text, re.DOTALL)
+        hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts]
+        self.assertEqual(allowed, [f"'sha256-{each}'" for each in hashes] or ["'none'"])
+        self.assertNotRegex(text, r"<[a-z][^>]*\son[a-z]+=")  # handlers would not run
 
     def test_folders_are_not_told(self):
         self.path("Jane^Doe").mkdir()
@@ -552,6 +565,15 @@ class PageOfASoundSurface(InTheBrowser):
     def test_loads_without_errors_and_asks_for_nothing(self):
         self.assertEqual(self.console, [])
         self.assertEqual(self.requests, [self.opened])
+
+    def test_a_script_that_is_put_in_does_not_run(self):
+        self.assertIsNone(self.browser.run("""
+            const script = document.createElement("script");
+            script.textContent = "window.wasRun = true";
+            document.body.append(script);
+            document.body.insertAdjacentHTML("beforeend", "<img src='data:,' onerror='window.wasRun = true'>");
+            return window.wasRun ?? null;"""))
+        self.browser.console()
 
     def test_the_canvas_is_not_blank(self):
         grey = browser.grey(self.browser.screenshot(".screen"), 40, 40)

@@ -40,6 +40,7 @@ class Html(unittest.TestCase):
         self.assertEqual(re.findall(r"""(?:src|href)=["'](?!data:)""", html), [])
         self.assertIn('sandbox="allow-scripts"', html)  # the frame reaches nothing of the notebook
         self.assertIn("default-src &#39;none&#39;", html)
+        self.assertNotRegex(html, "script-src[^;]*unsafe-inline")
 
     def test_of_nothing_is_a_line(self):
         self.assertEqual(adaptiso.Mesh([], [])._repr_html_(),
@@ -52,11 +53,11 @@ class Html(unittest.TestCase):
 
 
 class InChromium(InFolder):
-    def opened(self, html):
+    def opened(self, html, webgl=True):
         page = self.folder / "notebook.html"
         page.write_text("<!DOCTYPE html><html lang=en><head><meta charset=utf-8><title>t</title></head>"
                         f"<body>{html}</body></html>")
-        window = browser.Browser()
+        window = browser.Browser(webgl=webgl)
         self.addCleanup(window.close)
         window.driver.get(page.as_uri())
         return window
@@ -77,6 +78,19 @@ class InChromium(InFolder):
         # nothing of what it shows is out of its frame's sight
         self.assertLessEqual(window.run("return document.documentElement.scrollWidth"),
                              window.run("return window.innerWidth"))
+
+    def test_a_notice_of_no_viewer_lies_beside_the_picture(self):
+        window = self.opened(adaptiso.surface(ball(), -8)._repr_html_(), webgl=False)
+        picture = window.run("const b = document.images[0].getBoundingClientRect(); return b.bottom")
+        top = window.run("return document.querySelector('iframe').getBoundingClientRect().top")
+        window.driver.switch_to.frame(0)
+        end = time.monotonic() + 60
+        while window.run("return document.body.dataset.viewer || null") != "missing":
+            self.assertLess(time.monotonic(), end, "the viewer is not missing")
+            time.sleep(0.2)
+        notice = "document.getElementById('viewer-missing')"
+        self.assertGreaterEqual(top + window.run(f"return {notice}.getBoundingClientRect().top"), picture)
+        self.assertNotIn("below", window.run(f"return {notice}.textContent"))
 
     def test_a_picture_is_seen_where_the_frame_is_taken_out(self):
         html = adaptiso.surface(ball(), -8)._repr_html_()

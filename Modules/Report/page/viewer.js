@@ -315,7 +315,8 @@ void main() {
   const start = async () => {
     if (!document.createElement("canvas").getContext("webgl2")) {
       fail("The viewer needs WebGL 2, which this browser does not have or has turned off. "
-        + "The pictures below show the same surfaces.");
+        + (byId("pictures-title") ? "The pictures below show the same surfaces."
+          : "The picture shows the same surfaces."));
       return;
     }
     const nv = new niivue.Niivue({

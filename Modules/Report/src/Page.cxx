@@ -145,12 +145,29 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
     return elements;
 }
 
-void addViewerScripts(std::string& html) {
-    html += "<script>\n";
-    html += embedded::niivueJs();
-    html += "\n</script>\n<script>\n";
-    html += embedded::viewerJs();
+/// A script as the page's policy lets it run: its bytes are all that is in the element.
+void addScript(std::string_view script, std::string& html) {
+    html += "<script>";
+    html += script;
     html += "</script>\n";
+}
+
+void addViewerScripts(std::string& html) {
+    addScript(embedded::niivueJs(), html);
+    addScript(embedded::viewerJs(), html);
+}
+
+/// Sources for a Content-Security-Policy: scripts of these checksums alone.
+std::string scriptHashes(const std::vector<std::string_view>& checksums) {
+    std::string sources;
+    for (const std::string_view hex : checksums) {
+        std::string bytes;
+        for (std::size_t at = 0; at < hex.size(); at += 2) {
+            bytes += static_cast<char>(std::stoi(std::string(hex.substr(at, 2)), nullptr, 16));
+        }
+        sources += (sources.empty() ? "'sha256-" : " 'sha256-") + encodeBase64(bytes) + "'";
+    }
+    return sources.empty() ? "'none'" : sources;
 }
 
 /// Like addViewerScripts(), with niivue's script packed: a third of its size.
@@ -158,7 +175,7 @@ std::string packedViewerScripts() {
     static const std::string packed = encodeBase64(gzip(embedded::niivueJs()));
     return dataElement("niivue", "text/plain", packed) +
            dataElement("viewer-code", "text/plain", std::string(embedded::viewerJs())) +
-           "<script>\n" + std::string(embedded::unpackJs()) + "</script>\n";
+           "<script>" + std::string(embedded::unpackJs()) + "</script>\n";
 }
 
 std::string imageElement(const Picture& picture, const std::string& style) {
@@ -201,7 +218,11 @@ std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
                       spots = spotsHtml(scene, showsViewer), checks = checksHtml(report),
                       tables = tablesHtml(report), drawn = picturesHtml(pictures),
                       told = notesHtml(report, notes);
+    const std::string hashes =
+        showsViewer ? scriptHashes({embedded::niivueJsSha256(), embedded::viewerJsSha256()})
+                    : scriptHashes({});
     return fill(embedded::pageHtml(), {{"GENERATOR", generator},
+                                       {"SCRIPT_HASHES", hashes},
                                        {"VERDICT_CLASS", words.style},
                                        {"VERDICT_SIGN", words.sign},
                                        {"VERDICT_WORD", words.word},
@@ -233,16 +254,19 @@ std::string notebookHtml(const Report& report, const Picture& picture, const Pag
             viewerData(report, scene, options, notes) + packedViewerScripts();
         const std::string scale = scaleHtml(scene), title = escaped(report.title);
         const std::string viewer = fill(embedded::viewerHtml(), {{"SCALE", scale}});
+        const std::string hashes = scriptHashes(
+            {embedded::unpackJsSha256(), embedded::niivueJsSha256(), embedded::viewerJsSha256()});
         const std::string page = fill(embedded::notebookHtml(), {{"TITLE", title},
+                                                                 {"SCRIPT_HASHES", hashes},
                                                                  {"STYLE", embedded::styleCss()},
                                                                  {"VIEWER", viewer},
                                                                  {"SCRIPTS", scripts}});
-        constexpr const char* kWhole =
-            "position: absolute; top: 0; left: 0; width: 100%; height: 100%; ";
+        constexpr const char* kPlace = "position: absolute; top: 0; left: 0; width: 100%; ";
+        // below it a strip for the notice of a browser that can't show the viewer
         html += "<div style=\"position: relative; height: 500px; background: #fff\">\n" +
-                imageElement(picture, std::string(kWhole) + "object-fit: contain") +
-                "<iframe title=\"" + title + "\" sandbox=\"allow-scripts\" style=\"" + kWhole +
-                "border: 0\" srcdoc=\"" + escaped(page) + "\"></iframe>\n</div>\n";
+                imageElement(picture, std::string(kPlace) + "height: 470px; object-fit: contain") +
+                "<iframe title=\"" + title + "\" sandbox=\"allow-scripts\" style=\"" + kPlace +
+                "height: 100%; border: 0\" srcdoc=\"" + escaped(page) + "\"></iframe>\n</div>\n";
     } else {
         html += imageElement(picture, "max-width: 100%");
     }

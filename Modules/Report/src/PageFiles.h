@@ -14,4 +14,9 @@ std::string_view viewerJs();
 std::string_view niivueJs();  ///< empty when niivue could not be had
 std::string_view licenses();
 
+/// Of the scripts' bytes, in hexadecimal; empty for an empty one.
+std::string_view unpackJsSha256();
+std::string_view viewerJsSha256();
+std::string_view niivueJsSha256();
+
 }  // namespace adaptiso::embedded
