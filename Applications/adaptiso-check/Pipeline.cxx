@@ -363,12 +363,13 @@ bool CheckRun::hasUnreadable() const {
                        [](const SurfaceRun& surface) { return !surface.error.empty(); });
 }
 
+bool CheckRun::hasFailedCheck() const {
+    const auto fails = [](const auto& subject) { return !allHold(subject.checks); };
+    return std::ranges::any_of(surfaces, fails) || std::ranges::any_of(nesting, fails);
+}
+
 bool CheckRun::hasPassed() const {
-    return !hasUnreadable() &&
-           std::all_of(surfaces.begin(), surfaces.end(),
-                       [](const SurfaceRun& surface) { return allHold(surface.checks); }) &&
-           std::all_of(nesting.begin(), nesting.end(),
-                       [](const NestingRun& pair) { return allHold(pair.checks); });
+    return !hasUnreadable() && !hasFailedCheck();
 }
 
 int runCheck(const CheckOptions& options) {
@@ -383,7 +384,7 @@ int runCheck(const CheckOptions& options) {
         run.writePage([&] { return makeReport(run, checker.shown()); });
     }
     run.verdict = verdictOf(run);
-    if (!run.hasPassed() && options.report.page.empty()) {
+    if (run.hasFailedCheck() && options.report.page.empty()) {
         run.next = "--report check.html shows where";
     }
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });

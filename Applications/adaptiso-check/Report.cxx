@@ -450,12 +450,13 @@ private:
                           middleOf(mesh_, angles.triangleOfMinimum), check->isRequired});
     }
 
+    /// Also where it is thick enough: it is what a print breaks at.
     void addThinWall() {
+        const std::optional<WallReport>& walls = surface_.facts.walls;
+        if (!walls || !walls->hasWall()) return;
         const Check* check = failed(surface_.checks, "minWall");
-        if (!check) return;
-        const WallReport& walls = *surface_.facts.walls;
-        spots_.push_back({"thinnest wall, " + wallText(walls) + "," + in_,
-                          middleOf(mesh_, walls.triangle), check->isRequired});
+        spots_.push_back({"thinnest wall, " + wallText(*walls) + "," + in_,
+                          middleOf(mesh_, walls->triangle), check && check->isRequired});
     }
 
     void addDeviation() {
@@ -508,7 +509,7 @@ std::vector<ReportSpot> spotsOf(const NestingRun& pair, const std::string& inner
                                                    cornersOf(outer, report.gap.triangleB));
     spots.push_back(
         {"smallest gap, " + formatLength(nearest.distanceMm, 2) + " mm, between " + names,
-         0.5 * (nearest.pointA + nearest.pointB), check && check->isRequired});
+         nearest.pointA, check && check->isRequired});
     return spots;
 }
 

@@ -65,6 +65,7 @@ struct CheckRun : ProgramRun {
     std::vector<ToldNote> notes;  ///< of head models: what is unusual, asked by the profile bem
 
     bool hasPassed() const;  ///< all that is required holds, of all files
+    bool hasFailedCheck() const;
     bool hasUnreadable() const;
 };
 

@@ -58,6 +58,9 @@ class Input(CheckTest):
         for line, pattern in zip(lines, ("cut.off: ", "missing.off: no such file", "what.xyz")):
             self.assertRegex(line, "^adaptiso-check: .*" + pattern)
         self.assertIn("cut.off: NOT READ\n", done.stdout)
+        self.assertIn("next: --report check.html shows where", done.stdout)  # of flipped.off
+        # of what was not read a page shows nothing
+        self.assertNotIn("--report", self.run_check("cut.off", "missing.off").stdout)
         report = json.loads(self.path("report.json").read_text())
         self.assertEqual([s["passed"] for s in report["surfaces"]],
                          [False, True, False, False, False])

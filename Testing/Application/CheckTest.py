@@ -49,6 +49,11 @@ class Truth(CheckTest):
         # triangles of z = 0 and z = 100 only, each side of the bar meeting one or both
         self.assertEqual({a for a, _ in crossings["pairs"]} - {0, 1, 2, 3}, set())
         self.assertEqual(len({b for _, b in crossings["pairs"]}), 8)
+        examples = [e for e in said["examples"] if e["defect"] == "crossing"]
+        self.assertEqual([e["triangle"] for e in examples], [a for a, _ in crossings["pairs"]][:10])
+        self.assertIn(examples[0]["pointMm"][2], (0, 100))
+        self.assertIn({"name": "noSelfIntersections", "text": "no self-intersection"},
+                      [{key: check[key] for key in ("name", "text")} for check in said["checks"]])
         few = self.surface(together(cube((0, 0, 0), (100, 100, 100)), bar), "--max-pairs", 1)
         self.assertEqual(few["selfIntersections"]["pairCount"], crossings["pairCount"])
         self.assertEqual(few["selfIntersections"]["pairs"], crossings["pairs"][:1])
@@ -167,6 +172,9 @@ class Profiles(CheckTest):
                           [warning["code"] for warning in thin["warnings"]]), (True, 0.8, "failed", ["thin-walls"]))
         to_print = "30.0 x 20.0 x 10.0 mm, 2 shells, 0 handles, thinnest wall 0.50 mm"
         self.assertIn(to_print, self.path("page.html").read_text())
+        # a wall that is thick enough has its place too
+        self.check("shell.off", "--profile", "print", "--min-wall", 0.4, "--report", "thick.html")
+        self.assertIn('data-spot="1">thinnest wall, 0.50 mm, in shell.off</button>', self.path("thick.html").read_text())
         self.assertIn("  to print: " + to_print, self.run_check("shell.off", "--profile", "print").stdout)
         self.assertEqual(self.surface(shell, "--min-wall", 0.4, "--profile", "view")["failed"], [])
         self.assertEqual(self.surface(shell, "--min-wall", 0.6)["failed"], ["minWall"])

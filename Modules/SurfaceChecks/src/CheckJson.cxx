@@ -20,6 +20,7 @@ Json checksJson(const std::vector<Check>& checks) {
     Json list = Json::array();
     for (const Check& check : checks) {
         list.push_back({{"name", check.key},
+                        {"text", check.name},
                         {"required", check.isRequired},
                         {"outcome", outcomeWord(check.outcome)},
                         {"finding", check.finding}});
@@ -88,6 +89,14 @@ Json examplesJson(const SurfaceFacts& facts) {
                         {"triangle", nullptr},
                         {"vertices", {vertex}},
                         {"pointMm", nullptr}});
+    }
+    constexpr std::size_t kMostCrossings = 10;
+    const auto& pairs = facts.intersections.pairs;
+    for (std::size_t n = 0; n < std::min(pairs.size(), kMostCrossings); ++n) {
+        list.push_back({{"defect", "crossing"},
+                        {"triangle", pairs[n][0]},
+                        {"vertices", Json::array()},
+                        {"pointMm", n == 0 ? vector(facts.firstCrossingMm) : Json(nullptr)}});
     }
     return list;
 }
