@@ -193,11 +193,13 @@ class Sources(BemTest):
             self.assertEqual(m[3:], mm[3:])
             self.assertLess(math.dist([-1000 * m[0], -1000 * m[1], 1000 * m[2]], mm[:3]), 0.002)
             self.assertLess(math.hypot(*mm[:3]), RADII[0] - 10)  # edges of 162 vertices are 18 to 26 mm; chords
+        self.assertIn("-DSM model.geom model.cond dipoles.txt", (self.path("mm") / "README.md").read_text())
         self.assertFalse((self.path("mm") / "head-mri-trans.fif").exists())  # nasion and ears are not known
 
     def test_sources_outside_the_head_are_refused(self):
         self.bem(*self.labels(), "-o", "model")
         self.assertFalse((self.path("model") / "dipoles.txt").exists())
+        self.assertNotRegex((self.path("model") / "README.md").read_text(), r"dipoles\.txt|electrodes\.txt")
         self.fails(BAD_INPUT, r"--sources: 100.0 % of the sources lie outside inner_skull; are the surfaces of this head",
                    *self.labels(), "--sources", "model/outer_skin.surf", "-o", "again")
         done = self.bem(*self.labels(), "--sources", "model/inner_skull.surf", "--source-count", 40, "-o", "again")

@@ -339,7 +339,7 @@ class Output(BemTest):
         arguments = self.labels()
         self.path("model").mkdir()
         self.bem(*arguments, "-o", "model")  # an empty folder is filled
-        self.fails(BAD_INPUT, "exists and is not empty", *arguments, "-o", "model")
+        self.fails(BAD_INPUT, "exists and is not empty; --force replaces", *arguments, "-o", "model")
         first = (self.path("model") / "inner_skull.tri").read_bytes()
         more = ["300" if a == "162" else a for a in arguments]
         self.bem(*more, "-o", "model", "--force", "--gifti")

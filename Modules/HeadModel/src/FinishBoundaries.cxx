@@ -207,6 +207,7 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
     result.notes = std::move(raw.notes);
     result.seenMm = std::move(raw.seenMm);
     result.warnings = std::move(raw.warnings);
+    result.doubts = std::move(raw.doubts);
     const auto settle = [&](std::vector<float> part, HeadSurface surface) {
         BoxedSolid solid = boxed(part, raw.grid, 3 * options.smoothingMm, nameOf(surface));
         freeMemory(part);  // a head's worth of memory

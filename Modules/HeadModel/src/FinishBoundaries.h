@@ -24,6 +24,7 @@ struct RawBoundaries {
     std::vector<float> brain{};  ///< within the first of them; empty: not wanted
     std::vector<std::string> notes;
     std::vector<Warning> warnings;
+    std::vector<Finding> doubts{};
 };
 
 /// One raw solid of what belongs to it: its largest piece, closed, with its holes filled (those too

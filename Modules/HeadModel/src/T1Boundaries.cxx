@@ -198,7 +198,8 @@ class LostBrain : public InvalidInput {
 
 /// Checks the inner skull's place by the tissue around it. Right ones have 2 to 8 % of
 /// rays that begin in tissue (at the temples and the base), brains that lost a part 13 to 60 %.
-void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning>& warnings) {
+void requireBandInSight(const SkullBand& band, bool isGuess, RawBoundaries& found) {
+    std::vector<Warning>& warnings = found.warnings;
     constexpr double kUsuallySeen = 0.6, kUsuallyInTissue = 0.12, kMostInTissue = 0.3;
     constexpr double kLeastSeen = 0.2;       // stripped images: 0 to 5 %
     constexpr double kMostUnseenMm2 = 2500;  // ch2 and copies of it: at most 21 cm2; a flap: 37
@@ -230,10 +231,13 @@ void requireBandInSight(const SkullBand& band, bool isGuess, std::vector<Warning
     if (band.unseenMm2 > kMostUnseenMm2) {
         const Vec3& p = band.unseenMm;
         const auto text = [](double mm) { return shortNumber(std::round(mm)); };
+        const std::string unseen = "the skull does not show on " +
+                                   shortNumber(std::round(band.unseenMm2 / 100)) +
+                                   " cm2 in one piece";
+        found.doubts.push_back({unseen, band.unseenMm});
         warnings.push_back(
             {"skull-unseen",
-             "the skull does not show on " + shortNumber(std::round(band.unseenMm2 / 100)) +
-                 " cm2 in one piece, around (" + text(-p.x) + ", " + text(-p.y) + ", " + text(p.z) +
+             unseen + ", around (" + text(-p.x) + ", " + text(-p.y) + ", " + text(p.z) +
                  ") mm RAS: a hole (craniotomy), a lesion at the cortex, a dura as bright as brain "
                  "(a contrast agent), or a brain that is wrong there; look at the result"});
     }
@@ -364,7 +368,7 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
             "at this age the skull is too thin to show holes or that brain is lost: look at the "
             "inner skull");
     }
-    requireBandInSight(band, isGuess, raw.warnings);
+    requireBandInSight(band, isGuess, raw);
     if (!options.innerSkullOnly) {
         raw.notes.push_back("skull band seen on " + shortNumber(100 * band.seenFraction) +
                             " % of the rays to the scalp, median thickness " +

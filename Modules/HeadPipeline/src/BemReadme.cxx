@@ -127,27 +127,43 @@ std::string toolboxText(const BemModel& model, const BemFileOptions& options) {
     return text;
 }
 
-/// From the model to the gain matrix.
-std::string openMeegText(bool isMeg, const std::string& frame, const std::string& unit) {
+/// From the model to the gain matrix, as far as the files of this folder lead.
+std::string openMeegText(const BemModel& model, const std::string& frame, const std::string& unit) {
+    const bool isMeg = model.options.boundaries.innerSkullOnly;
+    const bool hasDipoles = model.sources.has_value();
+    const bool hasElectrodes = model.electrodes && !model.electrodes->all().empty();
     std::string text =
-        "\nOpenMEEG (not in Debian; openmeeg.github.io), in this folder, as far as the gain "
-        "matrix:\n```sh\n"
+        "\nOpenMEEG (not in Debian; openmeeg.github.io), in this folder:\n```sh\n"
         "om_check_geom -g model.geom\n"
         "om_assemble -HM model.geom model.cond hm.mat\n"
-        "om_minverser hm.mat hm_inv.mat\n"
-        "om_assemble -DSM model.geom model.cond dipoles.txt dsm.mat\n";
-    text += isMeg ? "om_assemble -H2MM model.geom model.cond squids.txt h2mm.mat\n"
-                    "om_assemble -DS2MM dipoles.txt squids.txt ds2mm.mat\n"
-                    "om_gain -MEG hm_inv.mat dsm.mat h2mm.mat ds2mm.mat gain.mat\n"
-                  : "om_assemble -H2EM model.geom model.cond electrodes.txt h2em.mat\n"
-                    "om_gain -EEG hm_inv.mat dsm.mat h2em.mat gain.mat\n";
-    text += "```\n`dipoles.txt` has a line `x y z ox oy oz` for each dipole (place, orientation), ";
-    text += isMeg ? "`squids.txt` one `x y z ox oy oz` for each sensor"
-                  : "`electrodes.txt` one `x y z` for each electrode";
-    return text + "; all in " + frame + ", " + unit +
-           ". `gain.mat` has a row for each sensor and a column for each dipole.\n\nTriangles and "
-           "normals of `*.tri` point outward. OpenMEEG takes either orientation; \"Global "
-           "reorientation of interface\" is no fault.\n";
+        "om_minverser hm.mat hm_inv.mat\n";
+    if (hasDipoles) text += "om_assemble -DSM model.geom model.cond dipoles.txt dsm.mat\n";
+    if (hasElectrodes) text += "om_assemble -H2EM model.geom model.cond electrodes.txt h2em.mat\n";
+    if (hasDipoles && hasElectrodes) text += "om_gain -EEG hm_inv.mat dsm.mat h2em.mat gain.mat\n";
+    text += "```\n";
+    const std::string where = "; in " + frame + ", " + unit;
+    if (hasDipoles) {
+        text += "`dipoles.txt` has a line `x y z ox oy oz` for each dipole (place, orientation)" +
+                where + ".\n";
+    }
+    if (hasElectrodes) {
+        text += "`electrodes.txt` has a line `x y z` for each electrode" + where + ".\n";
+    }
+    if (hasDipoles && hasElectrodes) {
+        text += "`gain.mat` has a row for each electrode and a column for each dipole.\n";
+    } else {
+        text += std::string("A gain matrix also takes ") +
+                (hasDipoles ? "" : "dipoles (`--sources`, or a line `x y z ox oy oz` for each)") +
+                (hasDipoles || hasElectrodes ? "" : " and ") +
+                (hasElectrodes ? ""
+                 : isMeg       ? "the sensors (a line `x y z ox oy oz` for each)"
+                               : "electrodes (`--electrodes`, `--montage`, or a line `x y z` for "
+                                 "each)") +
+                where + ".\n";
+    }
+    return text +
+           "\nTriangles and normals of `*.tri` point outward. OpenMEEG takes either orientation; "
+           "\"Global reorientation of interface\" is no fault.\n";
 }
 
 }  // namespace
@@ -183,7 +199,7 @@ std::string bemReadme(const BemModel& model, const BemFileOptions& options,
         "ico=None, conductivity=" +
         conductivityTuple(model.options) +
         ", subjects_dir='SUBJECTS_DIR')\nbem = mne.make_bem_solution(model)\n```\n";
-    return text + openMeegText(isOne, frame, unit) + toolboxText(model, options);
+    return text + openMeegText(model, frame, unit) + toolboxText(model, options);
 }
 
 }  // namespace adaptiso

@@ -108,11 +108,14 @@ void tellSpots(const BemModel& model, Report& report) {
     for (const Finding& finding : model.findings) {
         report.spots.push_back({finding.what, finding.pointMm});
     }
+    for (const Finding& doubt : model.doubts) {
+        report.spots.push_back({doubt.what, doubt.pointMm, false});
+    }
     for (std::size_t n = 0; n < model.gaps.size(); ++n) {
         const NestedGap& gap = model.gaps[n];
         report.spots.push_back({"smallest gap, " + formatFixed(gap.mm, 2) + " mm, of " +
                                     pairName(n, model.meshes.size()),
-                                0.5 * (gap.innerPointMm + gap.outerPointMm), false});
+                                gap.innerPointMm, false});
     }
 }
 

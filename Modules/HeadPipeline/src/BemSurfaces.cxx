@@ -280,6 +280,7 @@ std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemM
     model.notes.insert(model.notes.end(), boundaries.notes.begin(), boundaries.notes.end());
     model.warnings.insert(model.warnings.end(), boundaries.warnings.begin(),
                           boundaries.warnings.end());
+    model.doubts = boundaries.doubts;
     std::vector<TriangleMesh> surfaces;
     model.seenMm = boundaries.seenMm;
     model.segmented = boundaries.segmented;

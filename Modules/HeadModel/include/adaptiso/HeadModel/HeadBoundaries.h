@@ -11,6 +11,7 @@
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/HeadModel/Finding.h"
 #include "adaptiso/HeadModel/FractionField.h"
 #include "adaptiso/HeadModel/SegmentedSkull.h"
 
@@ -72,6 +73,7 @@ struct HeadBoundaries {
     std::vector<FractionField> solids;  ///< by headSurface()
     std::vector<std::string> notes;     ///< guesses and changes, one line each
     std::vector<Warning> warnings;      ///< doubts about the result
+    std::vector<Finding> doubts{};      ///< those of them that have a place (LPS mm)
     /// For each solid the places (LPS mm) where the image itself shows its surface: sides of
     /// labels, levels that are passed, ends of the skull's dark band. The rest was closed, filled,
     /// cut, grown or taken as usual. Empty where nobody looked (surfaces).

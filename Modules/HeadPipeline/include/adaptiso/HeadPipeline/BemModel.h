@@ -181,6 +181,7 @@ struct BemModel {
     std::vector<BemCheck> checks;
     std::vector<ToldNote> plausibility;  ///< unusual properties of the head
     std::vector<Finding> findings;       ///< why there is no model; points in LPS mm
+    std::vector<Finding> doubts{};       ///< as HeadBoundaries has them
 
     bool hasModel() const { return findings.empty(); }
 
