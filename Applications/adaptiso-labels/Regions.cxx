@@ -209,17 +209,18 @@ std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsOptions& 
 
 void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, LabelsRun& run) {
     const LabelTable table = readNames(run);
+    std::vector<std::optional<LabelColor>> given;
     std::map<Label, std::string> mergedNames;
     for (const LabelMerge& merge : run.options.merges) mergedNames[merge.number()] = merge.name;
     for (const Label label : labels) {
         Region& region = run.regions.emplace_back();
         region.label = label;
         region.voxels = census.voxels.at(label);
-        region.color = labelColor(label);
+        std::optional<LabelColor>& color = given.emplace_back();
         if (const LabelEntry* const entry = table.find(label)) {
             region.name = entry->name;
             region.abbreviation = entry->abbreviation;
-            region.color = entry->color.value_or(region.color);
+            color = entry->color;
         }
         if (const auto merged = mergedNames.find(label); merged != mergedNames.end()) {
             region.name = merged->second;
@@ -229,6 +230,8 @@ void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, La
         if (!region.hasOwnName) region.name = "region " + std::to_string(label);
         region.file = "regions/" + std::to_string(label) + run.options.format;
     }
+    const std::vector<LabelColor> colors = labelColors(labels, given);
+    for (std::size_t n = 0; n < colors.size(); ++n) run.regions[n].color = colors[n];
     if (run.options.namesFiles) nameFiles(run);
     warnOfNameless(run);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <new>
 
 #include "Rows.h"
@@ -121,6 +122,52 @@ LabelColor labelColor(std::int32_t value) {
             static_cast<std::uint8_t>(std::lround(255 * bright * (1 - strength * (1 - part))));
     }
     return color;
+}
+
+namespace {
+
+/// Squared distance of colours as eyes have it, roughly ("redmean"): 9 * 255^2 of black and white.
+double apartness(const LabelColor& a, const LabelColor& b) {
+    const double red = (a[0] + b[0]) / 2.0;
+    const auto square = [&](std::size_t channel) {
+        const double step = a[channel] - b[channel];
+        return step * step;
+    };
+    return (2 + red / 256) * square(0) + 4 * square(1) + (2 + (255 - red) / 256) * square(2);
+}
+
+}  // namespace
+
+std::vector<LabelColor> labelColors(std::span<const std::int32_t> labels,
+                                    std::span<const std::optional<LabelColor>> given) {
+    constexpr std::size_t kMostKeptApart = 64;
+    constexpr std::uint32_t kCandidates = 256;
+    constexpr double kAlike = 127.5 * 127.5;  // a sixth of the way from black to white
+    std::vector<LabelColor> colors;
+    std::vector<LabelColor> taken;
+    for (const auto& color : given) {
+        if (color) taken.push_back(*color);
+    }
+    const auto nearest = [&](const LabelColor& color) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const LabelColor& other : taken) least = std::min(least, apartness(color, other));
+        return least;
+    };
+    for (std::size_t n = 0; n < labels.size(); ++n) {
+        colors.push_back(given[n].value_or(labelColor(labels[n])));
+        if (given[n] || labels.size() > kMostKeptApart) continue;
+        double farthest = nearest(colors.back());
+        for (std::uint32_t k = 1; k <= kCandidates && nearest(colors.back()) < kAlike; ++k) {
+            const LabelColor other =
+                labelColor(static_cast<std::int32_t>(static_cast<std::uint32_t>(labels[n]) + k));
+            if (const double far = nearest(other); far > farthest) {
+                farthest = far;
+                colors.back() = other;
+            }
+        }
+        taken.push_back(colors.back());
+    }
+    return colors;
 }
 
 std::string hexText(const LabelColor& color) {

@@ -2,10 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numeric>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "adaptiso/LabelNames/LabelTable.h"
 
@@ -361,6 +365,40 @@ TEST(LabelColor, NeighboursAreToldApart) {
     }
     EXPECT_GT(all.size(), 250U);
     EXPECT_EQ(hexText(kOrange), "#ff8000");
+}
+
+TEST(LabelColors, OfFewLabelsAreFarApart) {
+    const auto distance = [](const LabelColor& a, const LabelColor& b) {
+        return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    };
+    for (const std::vector<std::int32_t>& labels :
+         {std::vector<std::int32_t>{1, 2, 7},
+          {3, 24, 58},
+          {2, 41, 77, 251},
+          {10, 11, 12, 13, 17, 18, 26, 49, 50, 51, 52, 53}}) {
+        const std::vector<std::optional<LabelColor>> none(labels.size());
+        const std::vector<LabelColor> colors = labelColors(labels, none);
+        for (std::size_t n = 0; n < colors.size(); ++n) {
+            for (std::size_t k = 0; k < n; ++k) {
+                // of 442 from black to white
+                EXPECT_GE(distance(colors[n], colors[k]), 60) << labels[n] << ' ' << labels[k];
+            }
+        }
+        EXPECT_EQ(colors[0], labelColor(labels[0]));
+    }
+}
+
+TEST(LabelColors, KeepAwayFromThoseOfTheTable) {
+    const LabelColor green = labelColor(7);
+    const std::vector<std::int32_t> labels{7, 9};
+    const std::vector<LabelColor> colors =
+        labelColors(labels, std::vector<std::optional<LabelColor>>{std::nullopt, green});
+    EXPECT_EQ(colors[1], green);
+    EXPECT_NE(colors[0], green);
+    // of many each has its own, whatever the others are
+    std::vector<std::int32_t> many(100);
+    std::iota(many.begin(), many.end(), 1);
+    EXPECT_EQ(labelColors(many, std::vector<std::optional<LabelColor>>(100))[6], green);
 }
 
 /// Debian's mricron-data and python3-mne, where they are installed.

@@ -5,7 +5,8 @@ from __future__ import annotations
 import difflib
 import json
 import logging
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
+from typing import (Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple,
+                    Union)
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +16,7 @@ from ._adaptiso import Error
 from ._arguments import (Progress, aim, count, is_path, listed, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads)
 from ._images import base_name, read_only, samples_of
-from ._mesh import Mesh
+from ._mesh import IN_VOXELS, Mesh, is_identity
 from ._triangles import Triangles
 
 logger = logging.getLogger("adaptiso")
@@ -95,8 +96,9 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         """``walls`` and ``regions`` as ``adaptiso-labels --json`` has them."""
         if self._report is None:
             report = json.loads(self._data.report)
-            for entry in report["regions"]:
-                name, color = self._names.of(entry["label"])
+            entries = report["regions"]
+            for entry, (name, color) in zip(entries, self._names.of(
+                    [entry["label"] for entry in entries])):
                 entry["name"], entry["color"] = name, "#%02x%02x%02x" % color
             self._report = report
         return self._report
@@ -110,10 +112,9 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         return dict(self._regions)
 
     def _region_of(self, entry: Dict[str, Any]) -> Region:
-        label = entry["label"]
-        name, color = self._names.of(label)
+        red, green, blue = bytes.fromhex(entry["color"][1:])
         neighbours = {other["label"]: other["areaMm2"] for other in entry["neighbours"]}
-        return Region(label, name, color, entry["volumeMm3"], entry["areaMm2"], entry["vertices"],
+        return Region(entry["label"], entry["name"], (red, green, blue), entry["volumeMm3"], entry["areaMm2"], entry["vertices"],
                       entry["triangles"], entry["eulerCharacteristic"], entry["components"],
                       neighbours)
 
@@ -175,8 +176,9 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         return len(self.regions)
 
     def __repr__(self) -> str:
+        unit, frame = ("", IN_VOXELS) if is_identity(self._data.affine) else (" mm", "RAS mm")
         return (f"<adaptiso.LabelSurfaces of {len(self):,} regions, {len(self.faces):,} triangles "
-                f"in walls, within {self.error_bound:.4g} mm, RAS mm>")
+                f"in walls, within {self.error_bound:.4g}{unit}, {frame}>")
 
     def __eq__(self, other: object) -> bool:
         """The same vertices, faces and labels."""
@@ -202,13 +204,12 @@ class _Names:
     def __init__(self, table: Mapping[int, Tuple[str, Optional[Tuple[int, int, int]]]]) -> None:
         self.table = dict(table)
 
-    def of(self, label: int) -> Tuple[str, Tuple[int, int, int]]:
-        """Name and colour of `label`."""
-        name, color = self.table.get(label, ("", None))
-        if color is None:
-            red, green, blue = _adaptiso.label_color(label)
-            color = (red, green, blue)
-        return name or f"region {label}", color
+    def of(self, labels: Sequence[int]) -> List[Tuple[str, Tuple[int, int, int]]]:
+        """Names and colours of the labels of a map."""
+        entries = [self.table.get(label, ("", None)) for label in labels]
+        colors = _adaptiso.label_colors(labels, [color for _, color in entries])
+        return [(name or f"region {label}", (red, green, blue))
+                for label, (name, _), (red, green, blue) in zip(labels, entries, colors)]
 
     def labels_of(self, name: str) -> List[int]:
         """\\raises Error"""

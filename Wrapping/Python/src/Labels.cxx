@@ -258,7 +258,13 @@ void declareLabels(py::module_& module) {
             return py::make_tuple(entriesOf(found.table), found.table.warnings);
         },
         py::arg("image"), py::arg("volume") = 0);
-    module.def("label_color", &labelColor, py::arg("label"));
+    module.def(
+        "label_colors",
+        [](const std::vector<std::int32_t>& labels,
+           const std::vector<std::optional<LabelColor>>& given) {
+            return labelColors(labels, given);
+        },
+        py::arg("labels"), py::arg("given"));
 }
 
 }  // namespace adaptiso::python

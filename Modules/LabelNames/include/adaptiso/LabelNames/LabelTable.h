@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -96,6 +97,12 @@ FoundLabelTables findLabelTables(const std::filesystem::path& image, std::int64_
 
 /// A strong colour for a value without one in any table, far from those of near values.
 LabelColor labelColor(std::int32_t value);
+
+/// Colours of the labels of one map, in their order: `given`, else labelColor(). Of up to 64
+/// labels, one that would look like another takes a colour far from those of all others.
+/// \pre  both are of one size
+std::vector<LabelColor> labelColors(std::span<const std::int32_t> labels,
+                                    std::span<const std::optional<LabelColor>> given);
 
 /// "#ff8000"
 std::string hexText(const LabelColor& color);
