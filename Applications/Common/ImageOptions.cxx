@@ -53,19 +53,7 @@ void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& 
 
 ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& options) {
     try {
-        ReadVolume read = readVolume(file, options);
-        if (options.series && read.format != "DICOM") {
-            throw InvalidInput("--series " + *options.series + ": " + file.string() + " is " +
-                               read.format + ", which has no series; leave --series out");
-        }
-        const bool asksForZarr =
-            options.level || options.channel || options.timePoint || options.refusesMissingChunks;
-        if (asksForZarr && read.format.find("Zarr") == std::string::npos) {
-            throw InvalidInput(
-                "--level, --channel, --time, --refuse-missing-chunks: " + file.string() + " is " +
-                read.format + ", and these are for Zarr; leave them out");
-        }
-        return read;
+        return readVolume(file, options);
     } catch (const FileError&) {
         const std::string hint = surfaceHint(file);
         if (hint.empty()) throw;

@@ -6,7 +6,7 @@ import math
 import re
 import struct
 
-from support import BAD_INPUT, SOURCE, USAGE, ApplicationTest, main
+from support import BAD_INPUT, SOURCE, USAGE, ApplicationTest, ball, main, write_nifti
 
 SECRETS = ("Doe", "Head first", "1.2.3")
 
@@ -26,7 +26,7 @@ def number(value):
 
 
 def slice_file(samples, columns, rows, position, along_column=(0, 1, 0), uid="1.2.3", echo=None,
-               image_type="ORIGINAL\\PRIMARY\\AXIAL", time=None, patient="Doe^Jane"):
+               image_type="ORIGINAL\\PRIMARY\\AXIAL", time=None, patient="Doe^Jane", modality="CT"):
     """A CT slice of signed 16-bit samples, 1 mm pixels, rows along x."""
     us = lambda value: struct.pack("<H", value)
     data = b"".join([
@@ -34,7 +34,7 @@ def slice_file(samples, columns, rows, position, along_column=(0, 1, 0), uid="1.
         element(0x0008, 0x0008, "CS", image_type),
         element(0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.2"),
         element(0x0008, 0x0032, "TM", time) if time else b"",
-        element(0x0008, 0x0060, "CS", "CT"),
+        element(0x0008, 0x0060, "CS", modality),
         element(0x0008, 0x103E, "LO", "Head first"),
         element(0x0010, 0x0010, "PN", patient),
         element(0x0018, 0x0086, "IS", str(echo)) if echo else b"",
@@ -192,6 +192,21 @@ class DicomImages(ApplicationTest):
         self.assertIn("Patient 2", listed)
         for secret in SECRETS:
             self.assertNotIn(secret, done.stderr + listed)
+
+    def test_the_list_of_a_refusal_names_the_modality(self):
+        Sphere().write(self.path("study"), range(10, 41, 2), uid="1.2.3")
+        Sphere().write(self.path("study"), range(10, 41, 2), uid="1.2.4", modality="PT")
+        self.assert_fails(BAD_INPUT, r"2 groups of slices.*\(1: CT, 16 slices.*; 2: PT, 16 slices.*--list-series",
+                          "study", "--iso", "250")
+
+    def test_a_folder_of_other_images_is_a_batch(self):
+        self.path("in").mkdir()
+        write_nifti(self.path("ball.nii"), ball(12, 4))
+        for name in ("a.nii.gz", "b.nii.gz", "c.nii.gz"):
+            (self.path("in") / name).write_bytes(gzip.compress(self.path("ball.nii").read_bytes()))
+        self.path("in/notes.txt").write_text("x")
+        self.assert_fails(BAD_INPUT, r"no DICOM file found in this folder: it holds 3 NIfTI files; give one of them, or "
+                                     r"all for a batch: in/\*\.nii\.gz", "in", "--iso", "50")
 
     def test_frames_left_out_of_a_segmentation_are_empty(self):
         boxes = {1: (2, 4, 6, 16, 18), 2: (8, 10, 12)}

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "DicomGroups.h"
+#include "DicomHeader.h"
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "adaptiso/Core/Errors.h"
@@ -13,13 +14,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kChoose = "choose one by its number (--series)";
+constexpr const char* kChoose =
+    "choose one by its number (--series; --list-series prints what is known of each)";
 
 std::string listOf(const std::vector<DicomGroup>& groups) {
     constexpr std::size_t kMost = 12;
     std::string list;
     for (std::size_t n = 0; n < groups.size() && n < kMost; ++n) {
-        list += fmt::format("{}{}: {}", n ? "; " : "", n + 1, describeDicomGroup(groups[n]));
+        const std::string modality = plainDicomText(groups[n].modality);
+        list += fmt::format("{}{}: {}{}", n ? "; " : "", n + 1,
+                            modality.empty() ? "" : modality + ", ", describeDicomGroup(groups[n]));
     }
     if (groups.size() > kMost) list += fmt::format("; and {} more", groups.size() - kMost);
     return list;

@@ -16,6 +16,8 @@
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Shortage.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -228,6 +230,26 @@ private:
                    fmt::format("no DICOM file found in this folder: {} {}",
                                fileNumber(file, folder_), foreign->fault),
                    foreign->remedy);
+        }
+        refuseImages();
+    }
+
+    /// Images of other formats, as for a batch.
+    void refuseImages() {
+        const auto ending = [](const fs::path& file) {
+            return lowerCase((file.extension() == ".gz" ? file.stem().extension().string() : "") +
+                             file.extension().string());
+        };
+        for (const fs::path& first : others_) {
+            const std::string_view format = recognizeImage(first);
+            if (format.empty() || isHidden(first)) continue;
+            const auto count = std::ranges::count(others_, ending(first), ending);
+            refuse(folder_,
+                   fmt::format("no DICOM file found in this folder: it holds {} {} file{}", count,
+                               format, count == 1 ? "" : "s"),
+                   count == 1 ? "give the file"
+                              : fmt::format("give one of them, or all for a batch: {}",
+                                            (folder_ / ("*" + ending(first))).string()));
         }
     }
 

@@ -158,10 +158,28 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
                    "libadaptisoItkIO.so (Debian package adaptiso-itk), which is not here"));
 }
 
+/// \throws InvalidInput  an option of another format
+void requireOptionsOf(const std::string& format, const fs::path& input,
+                      const ReadOptions& options) {
+    const std::string is = input.string() + " is " + format;
+    if (options.series && format != "DICOM") {
+        throw InvalidInput("--series " + *options.series + ": " + is +
+                           ", which has no series; leave --series out");
+    }
+    const bool hasChunks = format.find("Zarr") != std::string::npos || format == "N5";
+    const bool asksForChunks =
+        options.level || options.channel || options.timePoint || options.refusesMissingChunks;
+    if (asksForChunks && !hasChunks) {
+        throw InvalidInput("--level, --channel, --time, --refuse-missing-chunks: " + is +
+                           ", and these are for Zarr and N5; leave them out");
+    }
+}
+
 }  // namespace
 
 ReadVolume readVolume(const fs::path& input, const ReadOptions& options) {
     ReadVolume read = readAnyFormat(input, options);
+    requireOptionsOf(read.format, input, options);
     warnOfOddSamples(read);
     return read;
 }

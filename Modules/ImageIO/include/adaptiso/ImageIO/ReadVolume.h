@@ -96,6 +96,8 @@ struct ReadVolume {
 ///         data outside its own folder, or contradicts its own data. Nothing is padded and nothing
 ///         is guessed.
 /// \pre  not called from two threads at once for DICOM (GDCM's message switches are global).
+/// \throws InvalidInput  options.series and the input is no DICOM, or options.level, channel,
+///         timePoint or refusesMissingChunks and it is no Zarr or N5
 /// \throws FileError  as well when GDCM's decoder crashes or takes more than it may: 15 s
 ///         and 1 s for each MB of input, 1 GiB and 64 bytes for each byte (ReadOptions::sandbox)
 /// \post no process or file of this call's is left
