@@ -52,8 +52,9 @@ std::string inputStem(const fs::path& input) {
 
 std::string shellQuoted(const std::string& text) {
     constexpr std::string_view kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+,:@%";
-    if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+,:@%=";
+    const bool isPlain = !text.empty() && text.find_first_not_of(kPlain) == std::string::npos;
+    if (isPlain && text.front() != '=') return text;
     std::string word = "'";
     for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
     return word + "'";

@@ -115,6 +115,7 @@ public:
 
     DatasetStatus(const BidsOptions& options, const ChosenSubjects& chosen)
         : options_(options), subjects_(chosen.folders) {
+        options_.makesPictures = false;  // the page shows those that are there; they are no result
         const std::vector<Job> jobs = findJobs(options_, subjects_);
         if (options_.makes("check")) addChecks(checkJob(options_, jobs.front()));
         for (const auto& [subject, reason] : chosen.faulty) {
@@ -291,7 +292,7 @@ private:
         }
     }
 
-    const BidsOptions& options_;
+    BidsOptions options_;
     const std::vector<fs::path>& subjects_;
     std::map<fs::path, std::pair<QualityState, std::string>> checks_;  ///< by surface
     std::set<std::string> surfaces_;  ///< names of the files that are asked for
@@ -343,7 +344,7 @@ void takeAsked(BidsOptions& options) {
     }
 }
 
-/// As on the command line: "--surfaces iso=100 --check".
+/// As on the command line, complete: "--surfaces iso=100 --check".
 std::string wordsOf(const BidsOptions& options) {
     std::string words;
     for (const std::string product : kProducts) {
@@ -351,12 +352,16 @@ std::string wordsOf(const BidsOptions& options) {
         const std::string& list = options.wanted.at(product);
         words += (words.empty() ? "--" : " --") + product;
         if (!list.empty()) {
-            words += (product == "surfaces" ? " " : " --" + product + "-options ") + list;
+            words +=
+                (product == "surfaces" ? " " : " --" + product + "-options ") + shellQuoted(list);
         }
         if (product == "labels" && !options.segmentations.empty()) {
-            words += " --segmentations " + options.segmentations.string();
+            words += " --segmentations " + shellQuoted(options.segmentations.string());
         }
     }
+    if (!options.makesPictures) words += " --no-pictures";
+    if (options.common.isStrict) words += " --strict";
+    for (const std::string& code : options.common.allowed) words += " --allow " + code;
     return words;
 }
 

@@ -4,6 +4,8 @@ import csv
 import gzip
 import json
 import os
+import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -527,6 +529,41 @@ class Group(BidsTest):
         self.assertIn("7 participants, 0 whole", done.stdout)
         self.bids(OK, "group", what=())
         self.assertEqual(self.tree(), whole)
+
+    def test_prints_options_that_give_the_same_table_again(self):
+        """Every option that changes which files are made, or how a run is recorded."""
+        self.scan("sub-01/anat/sub-01", ball(24, 8), "dseg")
+        seg = self.path("seg of these")
+        for number in range(1, 8):
+            path = seg / f"sub-{number:02}/anat/sub-{number:02}_dseg.nii"
+            path.parent.mkdir(parents=True)
+            write_nifti(path, from_function(12, "B", lambda x, y, z: 3 if abs(x) < 3 > abs(y) and abs(z) < 3 else 0))
+        for what in (("--surfaces", "iso=100.5", "--no-pictures"),
+                     ("--surfaces", "iso=100.5"),
+                     ("--surfaces", "iso=100.5,format=stl", "--no-pictures", "--check", "--check-options", "profile=view"),
+                     ("--surfaces", "iso=100.5", "--strict", "--allow", "guessed-spacing,unit-converted", "--no-pictures"),
+                     ("--labels", "--labels-options", "format=stl,file-names=name", "--segmentations", str(seg),
+                      "--no-pictures")):
+            with self.subTest(what):
+                shutil.rmtree(self.path("out"), ignore_errors=True)
+                self.bids(OK, "participant", what=what)
+                done = self.bids(OK, "group", what=())
+                whole = self.tree()
+                printed = re.search(r"^options: (.*)$", done.stdout, re.MULTILINE)[1]
+                again = self.bids(OK, "group", what=shlex.split(printed))
+                self.assertEqual(again.stdout, done.stdout)
+                self.assertEqual(self.tree(), whole)
+                self.assertNotIn(None, self.told(what=shlex.split(printed)).values())
+                self.assertNotIn(True, [bool(again) for again in self.told(what=shlex.split(printed)).values()])
+
+    def test_counts_results_whose_pictures_are_not_there(self):
+        what = ("--surfaces", "iso=100.5")
+        self.bids(OK, "participant", what=(*what, "--no-pictures"))
+        self.assertIn("7 participants, 7 whole", self.bids(OK, "group", what=what).stdout)
+        self.bids(OK, "participant", what=what)
+        for figures in self.path("out").rglob("*_figures"):
+            shutil.rmtree(figures)
+        self.assertIn("7 participants, 7 whole", self.bids(OK, "group", what=()).stdout)
 
     def test_takes_what_most_participants_were_asked_for(self):
         self.bids(OK, "participant")
