@@ -195,6 +195,8 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
                   << failed << " failed";
         if (before > 0) std::cout << ", " << before << " of an earlier run";
         std::cout << '\n';
+        if (!running.summary.empty())
+            std::cout << "Wrote " << oneLine(running.summary.string()) << '\n';
     }
     flushResults();
     return failed == 0 ? kExitOk : kExitCheckFailed;

@@ -19,10 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kStyle = R"(
-body{font:16px/1.4 sans-serif;margin:2em auto;max-width:70em;padding:0 1em;color:#111;background:#fff}
+body{font:16px/1.4 sans-serif;margin:2em 0;padding:0 1em;color:#111;background:#fff}
 table{border-collapse:collapse;width:100%;min-width:44em}
 .scroll{overflow-x:auto}.scroll:focus-visible{outline:3px solid #4c9aff}
-th,td{border-bottom:1px solid #bbb;padding:.4em .6em;text-align:left;vertical-align:top}
+th,td{border-bottom:1px solid #bbb;padding:.4em .6em;text-align:left;vertical-align:top;overflow-wrap:anywhere}
+td.time{white-space:nowrap}
 .ok{color:#00532c;font-weight:bold}.failed{color:#a00000;font-weight:bold}
 tr.bad{background:#fff0f0}tr.unusual{background:#fff8e0}img{max-width:160px;max-height:120px}td.number{text-align:right}
 @media print{@page{size:A4;margin:15mm}body{margin:0;font-size:11px}tr{break-inside:avoid}.scroll{overflow:visible}table{min-width:0}}
@@ -81,7 +82,23 @@ bool hasRun(const SummaryRow& row) {
     return row.state == RunState::Done || row.state == RunState::Unusual;
 }
 
-std::string rowText(const SummaryRow& row, const fs::path& page) {
+/// Columns that say more than others.
+struct Columns {
+    bool hasProgram, hasInput, hasPicture;
+};
+
+Columns columnsOf(const std::vector<SummaryRow>& rows, const fs::path& page) {
+    const auto any = [&](const auto& isSo) { return std::ranges::any_of(rows, isSo); };
+    return {any([&](const SummaryRow& row) { return row.program != rows.front().program; }),
+            any([](const SummaryRow& row) { return !row.file.starts_with(row.name); }),
+            any([&](const SummaryRow& row) { return !pictureSource(row, page).empty(); })};
+}
+
+std::string cell(bool isWanted, const std::string& html) {
+    return isWanted ? "<td>" + html + "</td>" : "";
+}
+
+std::string rowText(const SummaryRow& row, const fs::path& page, const Columns& columns) {
     std::string files;
     constexpr std::size_t kMostFiles = 12;
     for (std::size_t n = 0; n < std::min(kMostFiles, row.outputs.size()); ++n) {
@@ -99,12 +116,13 @@ std::string rowText(const SummaryRow& row, const fs::path& page) {
                                                                    : "";
     return std::string("<tr") + std::string(mark) + "><td class=\"" + (isDone ? "ok" : "failed") +
            "\">" + std::string(stateText(row.state)) + "</td><th scope=\"row\">" +
-           escapedMarkup(row.name) + "</th><td>" + escapedMarkup(row.program) + "</td><td>" +
-           escapedMarkup(row.file) + "</td><td>" + escapedMarkup(row.says) + "</td><td>" + report +
-           (report.empty() || files.empty() ? "" : "<br>") + files + "</td><td>" +
-           thumbnail(row, page) + "</td><td>" + escapedMarkup(row.date) +
-           "</td><td class=\"number\">" + (row.seconds > 0 ? formatFixed(row.seconds, 1) : "") +
-           "</td></tr>\n";
+           escapedMarkup(row.name) + "</th>" +
+           cell(columns.hasProgram, escapedMarkup(row.program)) +
+           cell(columns.hasInput, escapedMarkup(row.file)) + "<td>" + escapedMarkup(row.says) +
+           "</td><td>" + report + (report.empty() || files.empty() ? "" : "<br>") + files +
+           "</td>" + cell(columns.hasPicture, thumbnail(row, page)) + "<td class=\"time\">" +
+           escapedMarkup(row.date) + "</td><td class=\"number\">" +
+           (row.seconds > 0 ? formatFixed(row.seconds, 1) : "") + "</td></tr>\n";
 }
 
 /// "2 of 12 failed, 1 missing or changed"; "All 12 done".
@@ -219,19 +237,27 @@ void writeSummary(const fs::path& page, const fs::path& folder,
 std::string summaryPage(const std::vector<SummaryRow>& rows, const fs::path& page) {
     const bool isDone = !rows.empty() && std::all_of(rows.begin(), rows.end(), hasRun);
     const std::string verdict = verdictOf(rows);
+    const Columns columns = columnsOf(rows, page);
+    const bool isOfOne = !rows.empty() && !columns.hasProgram && !rows.front().program.empty();
     std::string text =
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-        "<meta name=\"viewport\" content=\"width=device-width\"><title>adaptiso: " +
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src 'self' "
+        "file:; style-src 'unsafe-inline'; form-action 'none'; base-uri 'none'\">"
+        "<meta name=\"viewport\" content=\"width=device-width\">"
+        "<meta name=\"referrer\" content=\"no-referrer\"><title>adaptiso: " +
         verdict + "</title><style>" + std::string(kStyle) +
         "</style></head><body><main>\n<h1 class=\"" + (isDone ? "ok" : "failed") + "\">" + verdict +
         "</h1>\n<p>adaptiso " + programVersion() +
+        (isOfOne ? ", " + escapedMarkup(rows.front().program) : "") +
         "</p>\n<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Runs\">"
         "<table><caption>Every run that has a record in this folder; those that need attention "
         "come "
-        "first</caption>\n<thead><tr><th>verdict</th><th>name</th><th>program</th><th>input</th>"
-        "<th>result</th><th>files</th><th>picture</th><th>date</th><th>seconds</th></tr>"
-        "</thead><tbody>\n";
-    for (const SummaryRow& row : rows) text += rowText(row, page);
+        "first</caption>\n<thead><tr><th>verdict</th><th>name</th>" +
+        std::string(columns.hasProgram ? "<th>program</th>" : "") +
+        (columns.hasInput ? "<th>input</th>" : "") + "<th>result</th><th>files</th>" +
+        (columns.hasPicture ? "<th>picture</th>" : "") +
+        "<th>date</th><th>seconds</th></tr></thead><tbody>\n";
+    for (const SummaryRow& row : rows) text += rowText(row, page, columns);
     return text + "</tbody></table></div>\n</main></body></html>\n";
 }
 

@@ -57,6 +57,36 @@ TEST_F(BatchSummaryTest, HasNoPictureWhereTheReportHasNone) {
     EXPECT_EQ(page().find("<img"), std::string::npos);
 }
 
+TEST_F(BatchSummaryTest, HasNoColumnThatSaysNothing) {
+    SummaryRow other = row_;
+    row_.program = other.program = "adaptiso-mesh";
+    row_.file = "a.nii.gz";
+    other.name = "b";
+    other.file = "b.nii.gz";
+    std::string text = summaryPage({row_, other}, folder_ / "summary.html");
+    for (const char* const column : {"program", "input", "picture"}) {
+        EXPECT_EQ(text.find("<th>" + std::string(column)), std::string::npos) << column;
+    }
+    EXPECT_NE(text.find(", adaptiso-mesh</p>"), std::string::npos);
+    write("p/surface-1.png", "png");
+    row_.pictures = folder_ / "p";
+    other.program = "adaptiso-check";
+    other.file = "scan.nii";
+    text = summaryPage({row_, other}, folder_ / "summary.html");
+    for (const char* const column : {"program", "input", "picture"}) {
+        EXPECT_NE(text.find("<th>" + std::string(column)), std::string::npos) << column;
+    }
+}
+
+TEST_F(BatchSummaryTest, ForbidsItselfScriptsAndConnections) {
+    const std::string text = page();
+    const std::size_t policy = text.find("Content-Security-Policy");
+    ASSERT_NE(policy, std::string::npos);
+    EXPECT_LT(policy, text.find("<style>"));
+    EXPECT_NE(text.find("default-src 'none'; img-src 'self' file:;"), std::string::npos);
+    EXPECT_EQ(text.find("script-src"), std::string::npos);
+}
+
 TEST_F(BatchSummaryTest, SaysTheVerdictInWords) {
     row_.state = RunState::Failed;
     EXPECT_NE(page().find("1 of 1 failed"), std::string::npos);
