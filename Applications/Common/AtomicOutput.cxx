@@ -379,7 +379,7 @@ void AtomicFolder::check(const fs::path& path, const OwnNames& ownNames) {
     require(fs::is_directory(status), target, "exists and is no folder");
     const std::string other = foreignName(target, ownNames);
     require(other.empty() || ownNames, target,
-            "exists and is not empty; nothing is replaced unless asked for");
+            "exists and is not empty; --force replaces a folder that this program wrote");
     require(other.empty(), target,
             "holds " + other + ", which this program does not write; it is not replaced");
 }

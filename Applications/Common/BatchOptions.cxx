@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 
+#include "Common/CommonFrame.h"
 #include "Common/OptionValues.h"
 #include "Common/UsageWords.h"
 
@@ -45,6 +46,8 @@ void checkPlaceholders(const std::vector<std::pair<const char*, std::filesystem:
     for (const auto& [option, output] : named) requirePlaceholders(option, output, {"{name}"});
     requirePlaceholders("--summary", batch.summary, {});
     requirePlaceholders("--output-dir", batch.outputFolder, {});
+    requireFolderName("--output-dir", batch.outputFolder,
+                      "give a folder; -o names the files in it");
     requirePlaceholders("--json", common.json, {});
 }
 

@@ -212,6 +212,19 @@ CoordinateFrame outputFrame(std::optional<CoordinateFrame> wanted, const MeshFor
     return frame;
 }
 
+void requireFolderName(const std::string& option, const std::filesystem::path& folder,
+                       const std::string& instead) {
+    std::error_code error;
+    if (folder.empty() || std::filesystem::is_directory(folder, error)) return;
+    try {
+        findMeshFormat(folder);
+    } catch (const InvalidInput&) {
+        return;
+    }
+    throw UsageError(option + " " + folder.string() + ": is a folder to make, and named like a " +
+                     "file; " + instead);
+}
+
 std::string surfaceHint(const std::filesystem::path& file) {
     try {
         readMesh(file, {.keepsFaults = true});

@@ -94,6 +94,11 @@ const MeshFormat& meshFormatOf(const std::filesystem::path& file);
 /// \throws UsageError  the format cannot hold voxel indices
 CoordinateFrame outputFrame(std::optional<CoordinateFrame> wanted, const MeshFormat& format);
 
+/// Refuses a folder to make, the value of `option`, that is named like a file of meshes.
+/// \param instead  what to give instead \throws UsageError
+void requireFolderName(const std::string& option, const std::filesystem::path& folder,
+                       const std::string& instead);
+
 /// A hint for a file that cannot be read as an image: it is a surface, and which programs read
 /// surfaces. Empty if it cannot be read as a surface either.
 std::string surfaceHint(const std::filesystem::path& file);

@@ -174,6 +174,7 @@ std::string shortHelp(const CLI::App& app) {
     std::string text = FoldedHelp().make_usage(&app, app.get_name());
     text.insert(0, folded(app.get_description(), kColumns) + "\n");
     for (const std::string& group : app.get_groups()) {
+        if (group.empty()) continue;  // hidden options
         std::string names;
         for (const CLI::Option* option : app.get_options()) {
             if (option->get_group() != group || !option->nonpositional()) continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "Common/Naming.h"
 #include "Common/RunApp.h"
 
 namespace adaptiso {
@@ -60,6 +61,30 @@ const CLI::Option* optionNamed(const CLI::App& app, std::string_view word) {
     return found == options.end() ? nullptr : *found;
 }
 
+/// What other programs call an option of this one.
+std::optional<std::string> nameElsewhere(std::string_view typed,
+                                         const std::vector<std::string>& known) {
+    static const std::pair<std::string_view, std::vector<std::string_view>> kNames[] = {
+        {"iso", {"threshold", "contour", "thresh"}},
+        {"reduction", {"decimate", "decimation", "reduce"}},
+        {"max-error", {"tolerance", "error"}},
+        {"triangles", {"faces", "polygons"}},
+        {"force", {"overwrite", "replace", "clobber"}},
+        {"brain-mask", {"mask"}},
+        {"jobs", {"n-cpus", "n-jobs", "n-procs", "nproc", "workers", "parallel"}},
+        {"threads", {"n-cpus", "n-threads", "cores"}},
+        {"picture-color", {"color", "colour"}},
+        {"report", {"qc", "html"}},
+        {"pictures", {"screenshot", "png"}},
+        {"output", {"out-file", "save"}}};
+    const std::string word = replaced(std::string(typed), "_", "-");
+    for (const auto& [own, others] : kNames) {
+        const bool isMeant = std::ranges::find(others, word) != others.end();
+        if (isMeant && std::ranges::find(known, own) != known.end()) return std::string(own);
+    }
+    return std::nullopt;
+}
+
 std::string_view beforeEquals(std::string_view word) {
     return word.substr(0, word.find('='));
 }
@@ -108,7 +133,9 @@ std::string ofUnexpected(const CLI::App& app) {
     const std::string_view name = beforeEquals(*option);
     const std::string_view letters = name.substr(
         name.find_first_not_of('-') == name.npos ? name.size() : name.find_first_not_of('-'));
-    const auto meant = nearestWord(letters, longNames(app));
+    const std::vector<std::string> known = longNames(app);
+    auto meant = nameElsewhere(letters, known);
+    if (!meant) meant = nearestWord(letters, known);
     return shown(name) + ": there is no such option" +
            (meant ? "; did you mean --" + *meant + "?" : "");
 }
@@ -168,6 +195,7 @@ std::optional<std::string> nearestWord(std::string_view typed,
     for (const std::string& word : words) {
         const std::size_t distance = editDistance(typed, word);
         if (distance >= least || distance >= std::max(typed.size(), word.size())) continue;
+        if (distance > 1 && !typed.empty() && typed[0] != word[0]) continue;
         least = distance;
         nearest = &word;
     }

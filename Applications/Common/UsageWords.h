@@ -16,8 +16,8 @@ std::string shown(std::string_view text);
 
 /// The word that `typed` is a slip of the keyboard for: one letter off in words of up to four, two
 /// off in up to eight, three off in longer ones (a swap of neighbours is one), or one of the two
-/// begins with the other (three letters or more). The nearest, of equals the first; none when all
-/// are farther.
+/// begins with the other (three letters or more). Of words more than one letter off the first
+/// letter is right. The nearest, of equals the first; none when all are farther.
 std::optional<std::string> nearestWord(std::string_view typed,
                                        const std::vector<std::string>& words);
 

@@ -333,6 +333,9 @@ void checkCombinations(const CLI::App& app, const BemOptions& options) {
     require(!options.files.writesBesa || options.model.hasSkin(),
             "--besa needs a skin: not with --meg");
     require(options.isDryRun || !options.output.empty(), "-o DIR is needed (or --dry-run)");
+    requireFolderName(
+        "--output", options.output,
+        "give a folder, -o model; it gets .surf, and .gii and .vtp by --gifti, --vtp");
     require(options.subject.empty() == options.subjectsDir.empty(),
             "--subjects-dir and --subject need each other");
     require(options.subject.find('/') == std::string::npos && options.subject != ".." &&

@@ -4,6 +4,7 @@
 
 #include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"
+#include "Common/Naming.h"
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
@@ -63,6 +64,11 @@ void checkCombinations(const LabelsOptions& options) {
         throw UsageError("--conductivities: are written with --layers");
     }
     requireDisjoint(options.merges);
+    const std::filesystem::path& output = options.output;
+    const std::string extension = output.extension().string();
+    requireFolderName("--output", output,
+                      "give -o " + shellQuoted((output.parent_path() / output.stem()).string()) +
+                          (extension.empty() ? "" : " --format " + extension.substr(1)));
     checkPlaceholders({{"--output", options.output},
                        {"--report", options.report.page},
                        {"--pictures", options.report.pictures}},

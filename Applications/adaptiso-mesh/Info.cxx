@@ -270,7 +270,9 @@ void printValues(std::ostream& out, const ValueSummary& values, bool isInteger) 
 }
 
 /// A command to go on with: the options given but for those of --info, `words` and the input.
-std::string commandWith(const MeshOptions& options, const std::string& words) {
+/// \param input  without folders on a page
+std::string commandWith(const MeshOptions& options, const std::string& words,
+                        const std::string& input) {
     std::string command = "adaptiso-mesh";
     for (const std::string& option : options.batch.runOptions) {
         const bool isOfInfo = option == "--info" || option == "--show-phi" ||
@@ -278,7 +280,6 @@ std::string commandWith(const MeshOptions& options, const std::string& words) {
                               option.starts_with("--picture");
         if (!isOfInfo) command += " " + shellQuoted(option);
     }
-    const std::string input = baseName(options.input);
     return oneLine(command + " " + words + (input.starts_with('-') ? " -- " : " ") +
                    shellQuoted(input));
 }
@@ -290,8 +291,11 @@ void printNext(std::ostream& out, const MeshOptions& options, const ImageInfo& i
     for (const double threshold : info.values.otsu[1]) {
         isovalues += "--iso " + formatShort(threshold) + " ";
     }
-    out << "next        " << commandWith(options, "--iso auto --largest --fill-cavities")
-        << "\n            " << commandWith(options, isovalues + "--report try.html") << '\n';
+    const auto command = [&](const std::string& words) {
+        return commandWith(options, words, options.input.string());
+    };
+    out << "next        " << command("--iso auto --largest --fill-cavities") << "\n            "
+        << command(isovalues + "--report try.html") << '\n';
 }
 
 Json valuesJson(const ValueSummary& values) {
@@ -393,9 +397,10 @@ ReportResult writePage(const MeshOptions& options, const ImageInfo& info,
     if (!options.report.isWanted()) return {};
     const auto make = [&] {
         if (!info.values.histogram) throw InvalidInput("its values leave no isovalue to choose");
-        Report report =
-            infoReport(baseName(options.input), info.format, info.volume->view(), info.values,
-                       [&](const std::string& words) { return commandWith(options, words); });
+        Report report = infoReport(baseName(options.input), info.format, info.volume->view(),
+                                   info.values, [&](const std::string& words) {
+                                       return commandWith(options, words, baseName(options.input));
+                                   });
         report.warnings = linesOf(warnings);
         tellStrict(report, options.common, warnings, "");
         return report;

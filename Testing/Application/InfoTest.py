@@ -94,6 +94,17 @@ class Info(ApplicationTest):
                 self.mesh(*words[1:])
         self.assertTrue(self.path("its name-iso50.vtp").exists())
 
+    def test_the_commands_name_the_input_as_it_was_typed(self):
+        self.path("scans of today").mkdir()
+        name = "scans of today/in.nii"
+        write_nifti(self.path(name), from_function(20, "h", lambda x, y, z: 0 if x < -5 else 100 if x < 3 else 1000))
+        for typed in (name, str(self.path(name))):
+            text = self.mesh("--info", "--report", "page.html", typed).stdout
+            commands = text.partition("\nnext        ")[2].splitlines()
+            self.assertEqual([shlex.split(command)[-1] for command in commands], [typed] * 2)
+            self.mesh(*shlex.split(commands[0])[1:])
+            self.assertNotIn("scans of today", self.path("page.html").read_text())
+
     def test_the_histogram_has_a_row_for_each_value_of_a_mask(self):
         write_nifti(self.path("in.nii"), from_function(
             10, "B", lambda x, y, z: 1 if x < -3 else 0))  # 2 of 10 columns

@@ -1,6 +1,7 @@
 """adaptiso-labels as its users call it: what it writes, what it refuses, names, choices, batches."""
 
 import json
+import math
 import random
 
 from labelsSupport import LabelsTest, label_map, three_boxes
@@ -113,7 +114,7 @@ class OutputTest(LabelsTest):
 
     def test_replaces_its_own_folder_when_asked_to(self):
         self.labels("boxes.nii", "-o", "out", "--quiet")
-        self.refused(BAD_INPUT, "out: exists and is not empty", "boxes.nii", "-o", "out")
+        self.refused(BAD_INPUT, "out: exists and is not empty; --force replaces", "boxes.nii", "-o", "out")
         self.labels("boxes.nii", "-o", "out", "--force", "--labels", "1", "--format", "stl",
                     "--quiet")
         self.assertEqual({name for name in self.files("out") if name.startswith("regions/")},
@@ -363,7 +364,10 @@ class NamesTest(LabelsTest):
     def test_without_a_table(self):
         names = self.names()
         self.assertEqual([name for name, _ in names], ["region 1", "region 2", "region 7"])
-        self.assertEqual(len({color for _, color in names}), 3)
+        colors = [[int(color[at:at + 2], 16) for at in (1, 3, 5)] for _, color in names]
+        for n, one in enumerate(colors):  # 2 and 7 have hues 30 degrees apart by themselves
+            for other in colors[:n]:
+                self.assertGreater(math.dist(one, other), 100)
         self.assertIsNone(self.folder_report("out")["names"]["format"])
 
     def test_of_every_kind(self):

@@ -62,6 +62,26 @@ WRONG = [
     (USAGE, r"--voxels: .*did you mean --voxel\?", COMPARE, ("a.off", "a.off", "--voxels", "1")),
     (USAGE, r"--brain-msk: .*did you mean --brain-mask\?", BEM,
      ("--t1", "ball.nii", "--brain-msk", "x", "-o", "m")),
+    # what other programs call them; nothing where no option does that
+    (USAGE, r"--hollow: there is no such option \(see", MESH, (*BALL, "--hollow", "2")),
+    (USAGE, r"--verbose: there is no such option \(see", MESH, (*BALL, "--verbose")),
+    (USAGE, r"--threshold: .*did you mean --iso\?", MESH, ("ball.nii", "--threshold", "100")),
+    (USAGE, r"--decimate: .*did you mean --reduction\?", SIMPLIFY, ("a.off", "--decimate", "0.5")),
+    (USAGE, r"--overwrite: .*did you mean --force\?", BEM, ("--t1", "ball.nii", "-o", "m", "--overwrite")),
+    (USAGE, r"--mask: .*did you mean --brain-mask\?", BEM, ("--t1", "ball.nii", "--mask", "x", "-o", "m")),
+    (USAGE, r"--n_cpus: .*did you mean --jobs\?", MESH, (*BALL, "--n_cpus", "2")),
+    (USAGE, r"--color: .*did you mean --picture-color\?", MESH, (*BALL, "--color", "red")),
+    (USAGE, r"--qc: .*did you mean --report\?", MESH, (*BALL, "--qc", "x.html")),
+    # a folder that is named like a file
+    (USAGE, r"--output bones.stl: is a folder to make.*-o bones --format stl", "adaptiso-labels",
+     ("ball.nii", "-o", "bones.stl")),
+    (USAGE, r"--output m.gii: is a folder to make.*-o model", BEM, ("--t1", "ball.nii", "-o", "m.gii")),
+    (USAGE, r"--output-dir o.ply: is a folder to make", MESH, (*BALL, "--output-dir", "o.ply")),
+    # options of another format
+    (BAD_INPUT, "--level, .*ball.nii is NIfTI-1, and these are for Zarr and N5", BEM,
+     ("--t1", "ball.nii", "-o", "m", "--level", "1")),
+    (BAD_INPUT, "--series 1: .*ball.nii is NIfTI-1, which has no series", BEM,
+     ("--t1", "ball.nii", "-o", "m", "--series", "1")),
     (USAGE, r"--frobnicate: there is no such option \(see", MESH, (*BALL, "--frobnicate")),
     (USAGE, r"--x: there is no such option \(see", CHECK, ("a.off", "--x")),
     (USAGE, r"--größe: there is no such option \(see", MESH, (*BALL, "--größe")),
@@ -285,6 +305,13 @@ class Help(ApplicationTest):
                 self.assertNotRegex(text, r" in \[|\{[a-z]+,|:NUMBER|:INT")
                 for line in text.splitlines():
                     self.assertLessEqual(len(line), 100, line)
+
+
+    def test_short_names_every_group(self):
+        for program in (MESH, CHECK, COMPARE, BEM, SIMPLIFY, "adaptiso-labels", "adaptiso-bids", "adaptiso-giant"):
+            with self.subTest(program):
+                text = subprocess.run([BIN / program, "-h"], text=True, check=True, capture_output=True).stdout
+                self.assertNotRegex(text, r"(?m)^:")
 
 
 class Numbers(ApplicationTest):
