@@ -22,7 +22,8 @@ class Values(unittest.TestCase):
     def test_repr_tells_triangles_bound_and_frame(self):
         text = repr(sphere(max_error=0.1))
         self.assertRegex(text, r"^<adaptiso.Mesh of [\d,]+ triangles, [\d,]+ vertices, "
-                               r"within 0\.\d+ mm, RAS mm>$")
+                               r"within 0\.\d+, voxel indices \(identity affine\)>$")
+        self.assertRegex(repr(sphere(max_error=0.1, affine=LIA)), r"within 0\.\d+ mm, RAS mm>$")
         self.assertNotIn("within", repr(sphere(method="mc")))
 
     def test_pickles_are_whole(self):

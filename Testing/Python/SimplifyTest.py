@@ -82,6 +82,8 @@ class Simplify(unittest.TestCase):
             with self.assertRaises(adaptiso.Error) as caught:
                 adaptiso.simplify(vertices, faces, **arguments)
             self.assertNotIn("\n", str(caught.exception))
+        with self.assertRaisesRegex(adaptiso.Error, r"^faces 0\.5: must be a table of integers; max_error=0\.5\?$"):
+            adaptiso.simplify(adaptiso.Mesh(vertices, faces), 0.5)
         with self.assertRaises(adaptiso.Error):
             adaptiso.simplify(vertices, [], max_error=1)
         with self.assertRaises(adaptiso.Error):

@@ -78,7 +78,7 @@ class IsosurfaceTest(InFolder):
         affine[:3, 3] = image.GetOrigin()
         wanted = adaptiso.surface(array, -10, affine=affine)
         filter = Isosurface()
-        filter.SetInputDataObject(image)
+        filter.SetInputData(image)
         filter.SetValue(0, -10)
         filter.SetCoordinateFrame(1)
         filter.Update()

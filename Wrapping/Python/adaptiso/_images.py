@@ -126,9 +126,8 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     if not hasattr(_adaptiso, "read_image"):
         return _read_by_nibabel(name, numbers["volume_index"],
                                 series is not None or resample or is_of_zarr)
-    no_zarr = f"{name}: is no Zarr, which level, channel, time and all_chunks are for"
     if is_of_zarr and not os.path.isdir(name):
-        raise Error(no_zarr)
+        raise Error(f"{name}: is no Zarr or N5, which level, channel, time and all_chunks are for")
     try:
         with _reading:
             array, affine, kind, warnings = _adaptiso.read_image(
@@ -136,8 +135,6 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
                 resample_slices=resample)
     except Error as error:
         raise Error(_in_python(str(error))) from None
-    if is_of_zarr and "Zarr" not in kind:
-        raise Error(no_zarr)
     for warning in warnings:
         logger.warning("%s", warning.of(base_name(name)))
     return Image(array, affine, warnings, kind)
@@ -145,6 +142,9 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
 
 def _in_python(message: str) -> str:
     """A reader's message, which names options as the programs have them."""
+    message = message.replace("--level, --channel, --time, --refuse-missing-chunks",
+                              "level, channel, time, all_chunks")
+    message = message.replace("; --list-series prints what is known of each", "")
     for option in ("series", "volume-index", "level", "channel", "time", "resample-slices"):
         name = option.replace("-", "_")
         message = re.sub(rf"--{option}\b", f"{name}= of adaptiso.read", message)

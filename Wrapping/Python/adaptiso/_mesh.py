@@ -18,6 +18,15 @@ from ._triangles import Faces, Triangles, Vertices
 logger = logging.getLogger("adaptiso")
 
 
+#: The frame of what was made of an array without an affine, in words.
+IN_VOXELS = "voxel indices (identity affine)"
+
+
+def is_identity(affine: Any) -> bool:
+    """The affine is there, and points in RAS mm are voxel indices."""
+    return affine is not None and np.array_equal(affine, np.eye(4))
+
+
 class Mesh(Triangles[_adaptiso.MeshData]):
     """A triangle surface in scanner RAS millimetres.
 
@@ -210,9 +219,11 @@ class Mesh(Triangles[_adaptiso.MeshData]):
 
     def __repr__(self) -> str:
         bound = self.error_bound
-        within = "" if bound is None else f", within {bound:.4g} mm"
-        frame = {"ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm",
-                 "unknown": "unknown frame"}.get(self.frame, self.frame)
+        unit, frame = " mm", {"ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm",
+                              "unknown": "unknown frame"}.get(self.frame, self.frame)
+        if self.frame == "ras" and is_identity(self._data.affine):
+            unit, frame = "", IN_VOXELS
+        within = "" if bound is None else f", within {bound:.4g}{unit}"
         return (f"<adaptiso.Mesh of {len(self.faces):,} triangles, {len(self.vertices):,} "
                 f"vertices{within}, {frame}>")
 

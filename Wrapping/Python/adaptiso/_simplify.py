@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any, Optional
 
+import numpy as np
+
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, aim, flag, progress as checked_progress, smallest_angle,
+from ._arguments import (Progress, aim, flag, progress as checked_progress, shown, smallest_angle,
                          threads as checked_threads)
 from ._mesh import Mesh, mesh_data_of, stated_frames
 
@@ -70,6 +72,9 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
     >>> len(coarse.faces) < len(fine.faces) / 10, coarse.is_closed, coarse.error_bound <= 0.2
     (True, True, True)
     """
+    if faces is not None and np.ndim(faces) == 0:
+        raise Error(f"faces {shown(faces)}: must be a table of integers"
+                    + (f"; max_error={faces}?" if isinstance(faces, (int, float)) else ""))
     if max_error is None and triangles is None and reduction is None:
         raise Error("simplify: one of max_error, triangles and reduction must be given")
     given = mesh if faces is None else (mesh, faces)

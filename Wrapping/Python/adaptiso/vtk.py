@@ -51,6 +51,10 @@ class _Filter(VTKPythonAlgorithmBase):  # type: ignore[misc]
                          outputType="vtkPolyData")
         self._maximum_error = self._target_reduction = 0.0
 
+    def SetInputData(self, data: Any) -> None:
+        """The input, as data instead of another filter's output."""
+        self.SetInputDataObject(0, data)
+
     def GetOutput(self) -> Any:
         """The vtkPolyData."""
         return self.GetOutputDataObject(0)
