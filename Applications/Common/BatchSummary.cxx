@@ -22,8 +22,8 @@ constexpr std::string_view kStyle = R"(
 body{font:16px/1.4 sans-serif;margin:2em 0;padding:0 1em;color:#111;background:#fff}
 table{border-collapse:collapse;width:100%;min-width:44em}
 .scroll{overflow-x:auto}.scroll:focus-visible{outline:3px solid #4c9aff}
-th,td{border-bottom:1px solid #bbb;padding:.4em .6em;text-align:left;vertical-align:top;overflow-wrap:anywhere}
-td.time{white-space:nowrap}
+th,td{border-bottom:1px solid #bbb;padding:.4em .6em;text-align:left;vertical-align:top}
+tbody th,td{overflow-wrap:anywhere}td.ok,td.failed,td.time,td.number{white-space:nowrap;overflow-wrap:normal}
 .ok{color:#00532c;font-weight:bold}.failed{color:#a00000;font-weight:bold}
 tr.bad{background:#fff0f0}tr.unusual{background:#fff8e0}img{max-width:160px;max-height:120px}td.number{text-align:right}
 @media print{@page{size:A4;margin:15mm}body{margin:0;font-size:11px}tr{break-inside:avoid}.scroll{overflow:visible}table{min-width:0}}
