@@ -21,6 +21,9 @@ run(${CMAKE_COMMAND} --build ${WORK}/build --config ${CONFIG})
 if(name STREQUAL sphere)
     run(${WORK}/build/sphere ${WORK}/build)
     return()
+elseif(name STREQUAL vtkFirst)
+    run(${WORK}/build/vtkFirst)
+    return()
 endif()
 
 # a cube of 4 voxels a side in 8: what the pipeline writes is what adaptiso-mesh writes
