@@ -1,5 +1,6 @@
 """Inputs: formats, and what is refused as bad (exit code 3)."""
 
+import json
 import math
 import re
 import struct
@@ -184,6 +185,28 @@ class BadInput(ApplicationTest):
             with self.subTest(arguments):
                 done = self.assert_fails(BAD_INPUT, "odd.*name", *arguments, "--iso", "100")
                 self.assertNotIn("\x1b", done.stderr)
+
+
+class N5(ApplicationTest):
+    def test_levels_are_chosen_by_number(self):
+        """A cube of 4 mm in two resolutions; --level was once taken for Zarr's alone."""
+        for level, side in enumerate((8, 4)):
+            array = self.path("v") / f"s{level}"
+            (array / "0/0").mkdir(parents=True)
+            (array / "attributes.json").write_text(json.dumps({
+                "dimensions": [side] * 3, "blockSize": [side] * 3, "dataType": "uint8",
+                "compression": {"type": "raw"}, "downsamplingFactors": [8 // side] * 3}))
+            inside = range(side // 4, 3 * side // 4)
+            samples = bytes(100 if {i, j, k} <= set(inside) else 0 for k in range(side) for j in range(side)
+                            for i in range(side))
+            (array / "0/0/0").write_bytes(struct.pack(">HHIII", 0, 3, side, side, side) + samples)
+        (self.path("v") / "attributes.json").write_text(json.dumps({
+            "n5": "2.5.0", "scales": [[1, 1, 1], [2, 2, 2]],
+            "pixelResolution": {"unit": "mm", "dimensions": [1, 1, 1]}}))
+        for level, spacing in ((0, 1), (1, 2)):
+            report = self.report("v", "--iso", "50", "--level", str(level), "--channel", "0", "-o", "o.ply")
+            self.assertEqual(report["input"]["format"], "N5")
+            self.assertEqual(report["input"]["spacingMm"], [spacing] * 3)
 
 
 if __name__ == "__main__":

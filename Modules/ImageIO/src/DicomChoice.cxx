@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kChoose =
-    "choose one by its number (--series; --list-series prints what is known of each)";
+    "choose one by its number (--series; adaptiso-mesh --list-series prints what is known of each)";
 
 std::string listOf(const std::vector<DicomGroup>& groups) {
     constexpr std::size_t kMost = 12;

@@ -144,7 +144,7 @@ def _in_python(message: str) -> str:
     """A reader's message, which names options as the programs have them."""
     message = message.replace("--level, --channel, --time, --refuse-missing-chunks",
                               "level, channel, time, all_chunks")
-    message = message.replace("; --list-series prints what is known of each", "")
+    message = message.replace("; adaptiso-mesh --list-series prints what is known of each", "")
     for option in ("series", "volume-index", "level", "channel", "time", "resample-slices"):
         name = option.replace("-", "_")
         message = re.sub(rf"--{option}\b", f"{name}= of adaptiso.read", message)
