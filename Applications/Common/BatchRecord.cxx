@@ -133,8 +133,10 @@ std::string errorLine(const std::string& errors, const std::vector<fs::path>& in
         if (line.starts_with(start)) line.erase(0, start.size());
     };
     leaveOut(program + ": ");
+    if (!inputs.empty()) leaveOut(inputs.front().string() + ": ");
     for (const fs::path& input : inputs) {
         const std::string path = input.string(), name = baseName(input);
+        if (path.find('/') == std::string::npos) continue;  // "." is in every sentence
         for (std::size_t at = line.find(path); at != std::string::npos;
              at = line.find(path, at + name.size())) {
             line.replace(at, path.size(), name);

@@ -90,6 +90,8 @@ class ManyInputs(BatchTest):
     def test_json_to_a_file_beside_text(self):
         done = self.batch(OK, "a.nii", "b.nii", "--iso", 100, "--json", "lines.json")
         self.assertIn("2 inputs, 0 failed", done.stdout)
+        self.assertRegex(self.batch(CHECK_FAILED, ".", "--iso", 100, "--output-dir", "of here").stdout,
+                         r"FAILED  \.?[^:]*: no DICOM file found in this folder: it holds \d+ NIfTI files; .*\*\.nii")
         done = self.batch(OK, "a.nii", "b.nii", "--iso", 100, "--output-dir", "out")
         self.assertTrue(done.stdout.endswith("2 inputs, 0 failed\nWrote out/summary.html\n"), done.stdout)
         text = self.path("lines.json").read_text().splitlines()

@@ -205,6 +205,7 @@ class DicomImages(ApplicationTest):
         for name in ("a.nii.gz", "b.nii.gz", "c.nii.gz"):
             (self.path("in") / name).write_bytes(gzip.compress(self.path("ball.nii").read_bytes()))
         self.path("in/notes.txt").write_text("x")
+        self.path("in/a.json").write_text("{}")
         self.assert_fails(BAD_INPUT, r"no DICOM file found in this folder: it holds 3 NIfTI files; give one of them, or "
                                      r"all for a batch: in/\*\.nii\.gz", "in", "--iso", "50")
 

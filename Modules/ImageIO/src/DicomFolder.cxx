@@ -223,6 +223,7 @@ private:
 
     /// Slices as pictures, most often.
     void refuseOtherFormat() {
+        refuseImages();  // first: their sidecars are of other formats
         for (const fs::path& file : others_) {
             const auto foreign = findForeignContent(file);
             if (!foreign || foreign->kind == ForeignKind::StandIn) continue;
@@ -231,7 +232,6 @@ private:
                                fileNumber(file, folder_), foreign->fault),
                    foreign->remedy);
         }
-        refuseImages();
     }
 
     /// Images of other formats, as for a batch.
