@@ -1,5 +1,6 @@
 // Every reader of text, on its text as different programs save it: what is read is the same, or the
-// message names the cause.
+// message names the cause. OpenMEEG's .geom and .cond are read to check what was written, by
+// OpenMEEG's own rules.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -10,11 +11,9 @@
 #include "Common/Batch.h"
 #include "Common/Naming.h"
 #include "FolderTest.h"
-#include "Support/Meshes.h"
 #include "adaptiso-bids/SideFiles.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
-#include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -206,28 +205,6 @@ std::vector<Reader> allReaders() {
                            return std::to_string(mesh.points.size()) + ' ' +
                                   std::to_string(mesh.labels.at(0));
                        }});
-    for (const bool isGeometry : {true, false}) {
-        const std::string geometry =
-            "# Domain Description 1.1\n\nInterfaces 1\n\nInterface Skin: \"skin.tri\"\n\n"
-            "Domains 2\n\nDomain Head: -Skin\nDomain Air: +Skin\n";
-        const std::string conductivities =
-            "# Properties Description 1.0 (Conductivities)\n\nHead 0.33\nAir 0\n";
-        readers.push_back({isGeometry ? ".geom" : ".cond", isGeometry ? geometry : conductivities,
-                           [=](const std::string& bytes, const fs::path& folder) {
-                               writeOpenMeegSurface(testing::icosphere(1), folder / "skin.tri",
-                                                    CoordinateFrame::Ras, OpenMeegUnit::Metres);
-                               write(folder / "a.geom", isGeometry ? bytes : geometry);
-                               write(folder / "a.cond", isGeometry ? conductivities : bytes);
-                               const auto model =
-                                   readOpenMeegModel(folder / "a.geom", folder / "a.cond");
-                               std::string words;
-                               for (const auto& domain : model.domains) {
-                                   words +=
-                                       domain.name + ' ' + formatShort(domain.conductivity) + ' ';
-                               }
-                               return words;
-                           }});
-    }
     return readers;
 }
 

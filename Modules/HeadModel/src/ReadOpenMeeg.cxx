@@ -41,13 +41,8 @@ public:
             throw FileError(name_ + ": is larger than any such file (1 MB)");
         }
         std::ifstream file(path, std::ios::binary);
-        const std::string text{std::istreambuf_iterator<char>(file), {}};
-        if (!file || text.empty()) throw FileError(name_ + ": can't be read, or is empty");
-        if (const std::string fault = faultOfText(text); !fault.empty()) {
-            throw FileError(name_ + ": " + fault);
-        }
-        TextLines lines(text);
-        while (const auto line = lines.next()) lines_.emplace_back(trimmed(*line));
+        for (std::string line; std::getline(file, line);) lines_.push_back(line);
+        if (!file.eof() || lines_.empty()) throw FileError(name_ + ": can't be read, or is empty");
     }
 
     /// The first line, which must be `expected` to the letter.
@@ -60,7 +55,7 @@ public:
     }
 
     bool hasMore() {
-        while (at_ < lines_.size() && lines_[at_].empty()) {
+        while (at_ < lines_.size() && lines_[at_].find_first_not_of(" \t") == std::string::npos) {
             ++at_;
         }
         return at_ < lines_.size();

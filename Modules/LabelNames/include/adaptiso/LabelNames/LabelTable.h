@@ -44,19 +44,25 @@ public:
 };
 
 /// The table that a file's bytes hold, recognised by content alone:
-///   BIDS         tab-separated, a header with `index` and `name`; `abbreviation`, `color`
+///   BIDS         tab-separated, a header with `index` and `name`; `abbreviation`, `color`; CAT12's
+///                ROIid, ROIabbr and ROIname with semicolons, and others' headers, likewise
 ///   3D Slicer    the same with commas and LabelValue, Name, Color_R, Color_G, Color_B; and .ctbl
 ///                or .txt: rows as FreeSurfer's under "# Color table file", `_` for blanks in names
-///   FreeSurfer   rows of index, name, R G B A; # begins a comment
-///   ITK-SNAP     rows of index, R G B A, two flags and a name in quotes
+///   FreeSurfer   rows of index, name, R G B, perhaps A, perhaps a type of tissue; # begins a
+///   comment MRtrix       the same with an abbreviation ("L.BSTS") before the name FSLeyes rows of
+///   index, R G B (0 to 1, or to 255), perhaps A, and a name Workbench    a line with a name, one
+///   with index, R G B A ITK-SNAP     rows of index, R G B A, two flags and a name in quotes
 ///   MRIcron      rows of index and name, or index, name and code; or 768 bytes, the reds, greens
 ///                and blues of the values 0 to 255; black is no colour
+///   AAL          rows of abbreviation, name and index
 ///   GIFTI        the LabelTable of a .gii
 ///   FSL          an atlas in XML: label n of a probabilistic one is the value n + 1, else n
 ///   JSON         {"1": "name"}, {"1": {"name": .., "color": ..}}, a list of objects with index (or
 ///                key, id, value), name (or label) and color (or rgb, or red, green, blue), or
 ///                niivue's {"R": [], "G": [], "B": [], "I": [], "labels": []}
 ///
+/// Rows of other columns are refused, as numbers beside a name are no part of it. A colour that
+/// can't be read is left out with a warning.
 /// Files are taken for hostile. The first entry of a value counts; others give a warning. Text that
 /// is not UTF-8 is read as Latin-1.
 /// \param name  of the file, for messages
