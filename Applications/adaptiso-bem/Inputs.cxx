@@ -64,6 +64,7 @@ std::vector<TriangleMesh> readCortex(BemRun& run, const std::vector<fs::path>& p
     for (const fs::path& path : paths) {
         const auto stated = statedFrame(run.options.inputCoordinates, first + files.size());
         files.push_back({path, readMesh(path, {.inputCoordinates = stated})});
+        addWarnings(run.model.warnings, files.back().file.warnings, baseName(path));
         run.model.inputs.push_back(
             {baseName(path), role, std::string(files.back().file.format->name)});
     }
@@ -119,6 +120,7 @@ std::vector<TriangleMesh> readSurfaces(BemRun& run) {
     for (const fs::path& path : options.surfaces) {
         const auto stated = statedFrame(options.inputCoordinates, files.size());
         files.push_back({path, readMesh(path, {.keepsFaults = true, .inputCoordinates = stated})});
+        addWarnings(run.model.warnings, files.back().file.warnings, baseName(path));
         run.model.inputs.push_back(
             {baseName(path), "surface", std::string(files.back().file.format->name)});
         const MeshFile& file = files.back().file;

@@ -181,6 +181,7 @@ private:
         mesh.file = readMesh(mesh.path,
                              {.keepsFaults = true,
                               .inputCoordinates = statedFrame(options_.inputCoordinates, number)});
+        addWarnings(run_.warnings, mesh.file.warnings, baseName(mesh.path));
         if (image_ && !mesh.file.frame) {
             throw InvalidInput(
                 mesh.path.string() +

@@ -41,8 +41,10 @@ void checkOutputs(const CompareOptions& options) {
     plan.check(options.common, options.report);
 }
 
-NamedMesh readSurface(const fs::path& path, std::optional<CoordinateFrame> stated) {
+NamedMesh readSurface(CompareRun& run, const fs::path& path,
+                      std::optional<CoordinateFrame> stated) {
     NamedMesh surface{path, readMesh(path, {.inputCoordinates = stated})};
+    addWarnings(run.warnings, surface.file.warnings, baseName(path));
     freeMemory(surface.file.mesh.normals);  // those of the triangles are compared
     return surface;
 }
@@ -72,8 +74,8 @@ void readImage(CompareRun& run) {
 CommonFrame readInputs(CompareRun& run, std::array<NamedMesh, 2>& surfaces) {
     readImage(run);
     auto& [a, b] = surfaces;
-    a = readSurface(run.options.a, statedFrame(run.options.inputCoordinates, 0));
-    b = readSurface(run.options.b, statedFrame(run.options.inputCoordinates, 1));
+    a = readSurface(run, run.options.a, statedFrame(run.options.inputCoordinates, 0));
+    b = readSurface(run, run.options.b, statedFrame(run.options.inputCoordinates, 1));
     const auto frameA = a.file.frame, frameB = b.file.frame;
     std::optional<ImageGeometry> image;
     if (run.volume) image = run.volume->geometry;

@@ -56,10 +56,11 @@ void summarize(const TriangleMesh& mesh, SurfaceSummary& summary) {
     summary.areaMm2 = surfaceArea(mesh);
 }
 
-std::vector<PointData> readData(const SimplifyRun& run) {
+std::vector<PointData> readData(SimplifyRun& run) {
     std::vector<PointData> all;
     for (const DataSummary& summary : run.data) {
         PointData data = readPointData(summary.file);
+        addWarnings(run.warnings, data.warnings, baseName(summary.file));
         if (data.points != run.input.vertices) {
             throw InvalidInput(baseName(summary.file) + ": has values for " +
                                formatCount(data.points) + " points; " + baseName(run.input.file) +
@@ -308,6 +309,7 @@ int runSimplify(const SimplifyCommand& command) {
                         {.keepsPointArrays = true,
                          .inputCoordinates = statedFrame(command.inputCoordinates, 0)});
     });
+    addWarnings(run.warnings, input.warnings, baseName(command.input));
     run.input.format = input.format;
     for (const fs::path& data : command.data) requirePointOrder(*input.format, data);
     run.input.frame = input.frame;

@@ -2,8 +2,10 @@
 
 import json
 import math
+import struct
+import subprocess
 
-from support import BAD_INPUT, USAGE, Image, ball, lines, main, write_nifti
+from support import BAD_INPUT, BIN, USAGE, Image, ball, lines, main, write_nifti
 from checkSupport import NAMES, CheckTest, write_ply, write_stl, write_surf
 from headDefects import NAN, add_repeated_index, flipped, good, icosphere, moved, soup, write_off
 
@@ -44,6 +46,36 @@ class Input(CheckTest):
     def test_stl_soup_is_welded(self):
         write_stl(self.path("a.stl"), soup(icosphere(80)))
         self.assertEqual(self.check("a.stl")["surfaces"][0]["vertices"], 642)
+
+    def test_counts_of_triangles_are_held_against_the_file(self):
+        write_stl(self.path("a.stl"), icosphere(80))
+        stl = self.path("a.stl").read_bytes()
+        count = struct.unpack_from("<I", stl, 80)[0]
+
+        def counting(name, number, behind=b""):
+            self.path(name).write_bytes(stl[:80] + struct.pack("<I", number) + stl[84:] + behind)
+
+        for program, more in (("adaptiso-check", ()), ("adaptiso-compare", ("a.stl",)),
+                              ("adaptiso-simplify", ("--max-error", "1", "-o", "out.stl"))):
+            counting("joined.stl", count, stl)
+            counting("half.stl", count // 2)
+            for name, what in (("joined.stl", "another surface"),
+                               ("half.stl", f"{count - count // 2} more behind the {count // 2} triangles")):
+                done = subprocess.run([BIN / program, name, *more], cwd=self.folder, text=True,
+                                      stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+                self.assertRegex(done.stderr, f"{name}: .*{what}.*are two files joined")
+                self.assertFalse(self.path("out.stl").exists())
+        for number in (0, 0xFFFFFFFF):
+            counting("unset.stl", number)
+            report = self.check("unset.stl")
+            self.assertTrue(report["passed"])
+            self.assertEqual(report["surfaces"][0]["triangles"], count)
+            self.assertEqual([w["code"] for w in report["warnings"]], ["count-unset"])
+            self.assertEqual(report["warnings"][0]["file"], "unset.stl")
+        counting("zeros.stl", count, bytes(100))
+        self.assertEqual([w["code"] for w in self.check("zeros.stl")["warnings"]],
+                         ["trailing-bytes"])
 
     def test_one_bad_file_does_not_stop_the_others(self):
         self.write("good.off", icosphere(80))

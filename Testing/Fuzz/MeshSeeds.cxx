@@ -216,9 +216,58 @@ void addForeignTexts(Seeds& seeds) {
             "</GIFTI>");
 }
 
+/// Counts that other programs leave, and what may follow the last record.
+void addCounts(Seeds& seeds) {
+    const InputFolder folder;
+    const auto file = folder.path() / "mesh.stl";
+    writeMesh(tetrahedron(), file, {});
+    const std::string stl = bytesOf(file), head = stl.substr(0, 80), record = stl.substr(84, 50);
+    for (const std::string& count : {std::string(4, '\0'), std::string(4, '\xFF')}) {
+        seeds.add("stl", head + count + stl.substr(84));
+    }
+    seeds.add("stl", stl + stl);
+    seeds.add("stl", stl + record + "end");
+    const std::string attributes = record.substr(0, 48) + std::string("\3\0xyz", 5);
+    seeds.add("stl", head + std::string("\2\0\0\0", 4) + attributes + attributes);
+    for (const MeshFormat& format : meshFormats()) {
+        const std::string ending(format.extensions.front());
+        const auto mesh = folder.path() / ("joined" + ending);
+        writeMesh(tetrahedron(), mesh, {});
+        seeds.add(ending.substr(1), bytesOf(mesh) + bytesOf(mesh));
+        seeds.add(ending.substr(1), bytesOf(mesh) + std::string(9, '\0'));
+    }
+    seeds.add("ply",
+              "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+              "property float z\nproperty int a\nproperty int a\nelement face -1\nproperty list "
+              "uchar int vertex_indices\nend_header\n0 0 0 1 2\n1 0 0 1 2\n0 1 0 1 2\n3 0 1 2\n");
+    seeds.add("off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    seeds.add("vtk",
+              "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 "
+              "0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\nPOINT_DATA 3\nTEXTURE_COORDINATES t 2 float\n1 2 "
+              "3 4 5 6\nEDGE_FLAGS e int\n1 2 3\nOTHER\n7\n");
+    // many arrays that name one block
+    std::string arrays;
+    for (int n = 0; n < 20; ++n) {
+        arrays += "<DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" offset=\"0\"/>";
+    }
+    const auto ascii = [](const char* type, const char* name, const char* numbers) {
+        return std::string("<DataArray type=\"") + type + "\" Name=\"" + name +
+               "\" format=\"ascii\">" + numbers + "</DataArray>";
+    };
+    seeds.add("vtp",
+              "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\" "
+              "NumberOfPolys=\"1\"><PointData>" +
+                  arrays + "</PointData><Points>" + ascii("Float32", "p", "0 0 0 1 0 0 0 1 0") +
+                  "</Points><Polys>" + ascii("Int32", "connectivity", "0 1 2") +
+                  ascii("Int32", "offsets", "3") +
+                  "</Polys></Piece></PolyData><AppendedData encoding=\"raw\">_" +
+                  std::string("\3\0\0\0abc", 7) + "</AppendedData></VTKFile><!-- x -->");
+}
+
 }  // namespace
 
 void addMeshSeeds(Seeds& seeds) {
+    addCounts(seeds);
     addOwnFiles(seeds);
     addGiftiWithMatrix(seeds);
     addValues(seeds);

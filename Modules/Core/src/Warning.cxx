@@ -6,6 +6,7 @@ namespace {
 /// A line for each code, in alphabetical order; a test compares it with Documentation/Warnings.md.
 constexpr WarningCode kCodes[] = {
     {"array-left-out", "the output's format cannot hold values at points that the input has"},
+    {"attributes-left-out", "colours or numbers of an STL file's triangles were left out"},
     {"blended-labels", "an image that may hold labels was smoothed or resampled with blending"},
     {"bound-exceeded", "the format's digits take the file beyond the bound that was asked for"},
     {"brain-doubtful", "a part of the brain may be missing, or muscle was taken for brain"},
@@ -13,6 +14,7 @@ constexpr WarningCode kCodes[] = {
     {"colors-not-read", "a table of names has colours that cannot be read; the names were taken"},
     {"copies-left-out", "copies of files, compressed or exact, were left out"},
     {"count-missed", "the number of triangles asked for was not reached"},
+    {"count-unset", "a surface's count is 0 or all ones; all that follow were read"},
     {"electrodes-left-out", "electrodes have no place in their file (n/a, NaN, empty)"},
     {"empty-slices",
      "a segmentation's frames have no neighbours; slices without a frame are empty"},
@@ -54,6 +56,7 @@ constexpr WarningCode kCodes[] = {
     {"resample-filled", "resampling filled what lies around the image with its smallest value"},
     {"scaling-ignored", "the header's scaling is incomplete; the stored values were taken"},
     {"series-left-aside", "images of other series in the folder were left aside"},
+    {"several-solids", "an STL file holds several solids; they were read as one surface"},
     {"skull-closed", "a hole in the segmentation's skull is closed in the head model"},
     {"skull-thickened", "much of the head model's skull is thicker than the segmentation's"},
     {"skull-unseen", "the skull shows on too few of the rays to the scalp"},
@@ -67,7 +70,7 @@ constexpr WarningCode kCodes[] = {
     {"t2-weighted", "CSF is brighter than brain in an image given as a T1"},
     {"thickness-unusual", "skull or scalp of a head model is unusually thick, thin or uneven"},
     {"thin-walls", "a solid has walls thinner than a printer makes"},
-    {"trailing-bytes", "bytes follow the image that the header describes; they were left out"},
+    {"trailing-bytes", "bytes follow the image or surface that a file counts; they were left out"},
     {"uids-differ", "slices have UIDs of their own; they were read as one series"},
     {"unit-converted", "lengths were converted to millimetres"},
     {"values-scaled", "values are scaled as the header says, which some programs ignore"},

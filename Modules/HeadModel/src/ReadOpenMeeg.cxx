@@ -179,7 +179,11 @@ void requireTwoSides(Lines& lines, const OpenMeegModel& model) {
 }
 
 void readInterfaceMesh(const fs::path& path, TriangleMesh& mesh) {
-    mesh = readMesh(path).mesh;
+    MeshFile file = readMesh(path);
+    if (!file.warnings.empty()) {
+        throw FileError(path.string() + ": " + file.warnings.front().text);
+    }
+    mesh = std::move(file.mesh);
     if (!(enclosedVolume(mesh) > 0)) {
         throw FileError(path.string() + ": its triangles are not counter-clockwise from outside");
     }

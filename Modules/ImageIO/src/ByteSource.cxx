@@ -13,21 +13,17 @@
 
 #include "FileFault.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Surplus.h"
 
 namespace adaptiso::detail {
 namespace {
 
 constexpr std::size_t kTailHead = std::size_t{1} << 20;
-constexpr std::size_t kMostPadding = std::size_t{1} << 16;
-
-bool isAllZeros(std::string_view bytes) {
-    return bytes.find_first_not_of('\0') == std::string_view::npos;
-}
 
 /// Counts `bytes` in.
 void take(std::string_view bytes, ByteTail& tail) {
     tail.byteCount += bytes.size();
-    tail.isZeros = tail.isZeros && tail.byteCount <= kMostPadding && isAllZeros(bytes);
+    tail.isZeros = tail.isZeros && tail.byteCount <= kMostPadding && areZeros(bytes);
     tail.head += bytes.substr(0, kTailHead - std::min(kTailHead, tail.head.size()));
 }
 
@@ -104,10 +100,7 @@ void ByteSource::requireRoomFor(std::uint64_t byteCount) const {
     constexpr std::uint64_t kDeflateLimit = 1032;  // no deflate stream expands further
     const std::uint64_t most = rawBytes_ * kDeflateLimit;
     if (byteCount > most) refuseTruncated(byteCount - most);
-    // close to that limit there is next to nothing in the data: a mask with one voxel in a million
-    // set stays below it
-    constexpr std::uint64_t kBombBytes = std::uint64_t{1} << 30, kBombExpansion = 1000;
-    if (byteCount > kBombBytes && byteCount / kBombExpansion > rawBytes_) {
+    if (!kImageUnpackLimit.allows(rawBytes_, byteCount)) {
         refuse(file_,
                fmt::format("its {} compressed bytes expand to a size of {}, as only a "
                            "decompression bomb or an empty image does",
@@ -188,7 +181,7 @@ void ByteSource::lookBehindStream(ByteTail& tail) {
     const std::size_t held = rest.size();
     rest.resize(held + std::min<std::uint64_t>(bytesLeft(), kMostPadding + 1));
     rest.resize(held + readRaw(rest.data() + held, rest.size() - held));
-    if (rest.size() <= kMostPadding && isAllZeros(rest)) return;
+    if (rest.size() <= kMostPadding && areZeros(rest)) return;
     tail.hasSecondStream = beginsStream(rest);
     tail.hasStray = !tail.hasSecondStream;
 }

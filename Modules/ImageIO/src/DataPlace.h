@@ -38,8 +38,7 @@ struct ImageExtent {
     static ImageExtent of(const SampleLayout& layout, const Index3& size);
 };
 
-/// True if the extra bytes are whole slices, or half an image and more: the file holds more of the
-/// image than its header describes. Fewer bytes are harmless.
+/// isMoreData() of slices: the file holds more of the image than its header describes.
 bool isMoreImage(std::uint64_t extraBytes, const ImageExtent& extent);
 
 /// A header's word of where its samples lie.

@@ -12,6 +12,7 @@
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Samples.h"
+#include "adaptiso/Core/Surplus.h"
 
 // DICOM PS3.5, chapter 8 and annex A.4: how pixels are stored, and how compressed ones are cut.
 namespace adaptiso::detail {
@@ -223,14 +224,13 @@ void DicomFrames::openNative() {
         "correct Rows, Columns, BitsAllocated or NumberOfFrames, or get the file again");
 }
 
-/// Padding: no more than 64 KiB of zeros.
+/// Padding: no more than kMostPadding zeros.
 bool DicomFrames::isZeros(std::uint64_t position, std::uint64_t byteCount) {
-    constexpr std::uint64_t kMostPadding = 1 << 16;
     if (byteCount > kMostPadding) return false;
     inflateOnce();
     std::string bytes(byteCount, '\0');
     bytes_.read(position, bytes.data(), bytes.size());
-    return bytes.find_first_not_of('\0') == std::string::npos;
+    return areZeros(bytes);
 }
 
 /// Positions are those of the inflated data set where it is deflated.

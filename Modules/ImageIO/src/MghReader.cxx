@@ -8,6 +8,7 @@
 #include "HeaderText.h"
 #include "Readers.h"
 #include "Samples.h"
+#include "adaptiso/Core/MghFooter.h"
 
 // ITK 5.2 as packaged has no MGH reader. Layout: FreeSurfer's utils/mriio.cpp (mghRead),
 // big-endian.
@@ -60,42 +61,6 @@ ImageGeometry geometryOf(const HeaderBytes& bytes, const Index3& size,
     return {size, toLps * (centre - ras * half), toLps * ras};
 }
 
-/// Footer that mghWrite puts behind the samples: four or five numbers of the scan (TR, flip angle,
-/// TE, TI, field of view), and tags, each with its length.
-enum class Footer { Whole, OpenEnded, CutOff, None };
-
-Footer footerOf(const ByteTail& tail) {
-    constexpr std::size_t kLeastNumbers = 4 * sizeof(float), kNumbers = 5 * sizeof(float);
-    if (tail.byteCount == 0 || tail.byteCount == kLeastNumbers) return Footer::Whole;
-    if (tail.byteCount < kNumbers) return Footer::CutOff;
-    const HeaderBytes bytes(tail.head, std::endian::big);
-    bool isCutOff = false;
-    for (std::size_t at = kNumbers; at < bytes.size();) {
-        // utils/tags.cpp: old tags have another kind of length, or none
-        constexpr std::int32_t kOldColourTable = 1, kOldRealRas = 2, kOldSurface = 20,
-                               kOldXform = 30;
-        constexpr std::int32_t kLastTag = 1000, kEndTag = -1;
-        if (bytes.size() - at < sizeof(std::int32_t)) return Footer::CutOff;
-        const auto tag = bytes.at<std::int32_t>(at);
-        at += sizeof(std::int32_t);
-        const bool isEnd = tag == kEndTag && bytes.size() - at <= sizeof(std::int64_t);
-        if (isEnd) return Footer::Whole;
-        if (tag < 1 || tag > kLastTag) return Footer::None;
-        if (tag == kOldRealRas) continue;
-        if (tag == kOldColourTable || tag == kOldSurface) return Footer::OpenEnded;
-        const std::size_t lengthBytes = tag == kOldXform ? 4 : 8;
-        if (bytes.size() - at < lengthBytes) return Footer::CutOff;
-        const std::int64_t length =
-            tag == kOldXform ? bytes.at<std::int32_t>(at) : bytes.at<std::int64_t>(at);
-        at += lengthBytes;
-        if (length < 0) return Footer::None;
-        isCutOff = static_cast<std::uint64_t>(length) > tail.byteCount - at;
-        if (isCutOff || static_cast<std::uint64_t>(length) > bytes.size() - at) break;
-        at += static_cast<std::size_t>(length);
-    }
-    return isCutOff ? Footer::CutOff : Footer::Whole;
-}
-
 }  // namespace
 
 std::optional<std::uint64_t> mghSamplesAt(std::string_view head) {
@@ -141,14 +106,14 @@ ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     place.bytes = kHeaderBytes;
     PlacedVolume read = readPlaced(place, layout, geometry);
     const ImageExtent extent = ImageExtent::of(layout, size);
-    const Footer footer = footerOf(read.tail);
-    const bool mayBeImage = footer != Footer::Whole && isMoreImage(read.tail.byteCount, extent);
-    if (footer == Footer::None || mayBeImage) {
+    const MghFooter footer = mghFooterOf(read.tail.head, read.tail.byteCount);
+    const bool mayBeImage = footer != MghFooter::Whole && isMoreImage(read.tail.byteCount, extent);
+    if (footer == MghFooter::None || mayBeImage) {
         checkTail(place, read.tail, layout, size, warnings);
     } else if (read.tail.byteCount > 0 && place.encoding == ByteSource::Encoding::Raw) {
         requireBinaryTransfer(place, layout, size);
     }
-    if (footer == Footer::CutOff && !mayBeImage) {
+    if (footer == MghFooter::CutOff && !mayBeImage) {
         warnings.push_back(
             {"footer-cut-off", "the notes that follow its image (MGH footer) are cut off"});
     }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -79,8 +80,19 @@ private:
 /// is cut at 200 bytes.
 std::string storedName(std::string_view name);
 
-/// `name`, with as many '_' behind it as none of `taken` has; it is taken from now on.
-std::string unusedName(std::string name, std::set<std::string>& taken);
+/// Names that a file holds once each.
+class TakenNames {
+public:
+    explicit TakenNames(std::set<std::string> taken) : taken_(std::move(taken)) {}
+
+    /// `name`, or with up to three '_' behind it, or with "_1", "_2", ...; it is taken from now on.
+    /// Cost: n log n for n names, whatever they are.
+    std::string unused(std::string name);
+
+private:
+    std::set<std::string> taken_;
+    std::map<std::string, std::size_t> numbers_;  ///< the last one behind a name
+};
 
 /// A normal as a file has it, whatever its length. Damage where float can't hold it.
 Normal storedNormal(const Vec3& v);

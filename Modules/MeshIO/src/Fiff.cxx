@@ -11,6 +11,7 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "Counts.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
@@ -94,6 +95,7 @@ Content decode(std::string_view bytes) {
         }
     }
     if (content.tags.empty()) damaged("it is empty");
+    content.behind = source.rest();
     return content;
 }
 
@@ -329,6 +331,14 @@ void requireMriFrame(const fiff::Content& content, std::size_t block) {
                 "it must be in MRI coordinates (5)");
 }
 
+void requireCount(const fiff::Content& content, std::size_t block, std::int32_t kind,
+                  std::size_t there, const char* what) {
+    const fiff::Tag* const tag = content.find(block, kind);
+    if (tag == nullptr || static_cast<std::size_t>(fiff::toInt(*tag)) == there) return;
+    damaged("a surface counts " + std::to_string(fiff::toInt(*tag)) + " " + what + " and has " +
+            std::to_string(there));
+}
+
 FiffSurface decodeSurface(const fiff::Content& content, std::size_t block) {
     FiffSurface surface;
     if (const fiff::Tag* id = content.find(block, fiff::kSurfaceId)) surface.id = fiff::toInt(*id);
@@ -354,6 +364,8 @@ FiffSurface decodeSurface(const fiff::Content& content, std::size_t block) {
         }
         surface.mesh.triangles.push_back(triangle);
     }
+    requireCount(content, block, fiff::kNodeCount, surface.mesh.points.size(), "points");
+    requireCount(content, block, fiff::kTriangleCount, surface.mesh.triangles.size(), "triangles");
     return surface;
 }
 
@@ -474,7 +486,8 @@ std::pair<std::filesystem::path, std::string> fiffPart(const std::filesystem::pa
 MeshFile decodeFiff(std::string_view bytes, std::string_view surface,
                     const MeshReadOptions& options) {
     constexpr double kMmPerM = 1000;
-    std::vector<FiffSurface> surfaces = insideOut(surfacesIn(fiff::decode(bytes)));
+    const fiff::Content content = fiff::decode(bytes);
+    std::vector<FiffSurface> surfaces = insideOut(surfacesIn(content));
     const std::vector<std::string> names = namesOf(surfaces);
     std::string list;
     for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
@@ -490,6 +503,9 @@ MeshFile decodeFiff(std::string_view bytes, std::string_view surface,
                     "name one behind a colon, as in model.fif:" + names.back() + " (" + list + ")");
     }
     MeshFile file;
+    const auto tags = static_cast<std::int64_t>(content.tags.size());
+    requireNoMore({"tags", tags, static_cast<std::int64_t>(bytes.size())}, content.behind,
+                  file.warnings);
     file.mesh = std::move(surfaces.front().mesh);
     for (Vec3& point : file.mesh.points) point = kMmPerM * point;
     file.frame = options.inputCoordinates.value_or(CoordinateFrame::TkRas);

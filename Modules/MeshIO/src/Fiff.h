@@ -55,6 +55,7 @@ struct Block {
 struct Content {
     std::vector<Tag> tags;
     std::vector<Block> blocks;
+    std::string_view behind;  ///< bytes after the last tag
 
     /// The first tag of this kind that stands in this block itself.
     const Tag* find(std::size_t block, std::int32_t kind) const;

@@ -7,6 +7,7 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "Counts.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso::meshio {
@@ -104,23 +105,47 @@ std::optional<ImageGeometry> decodeGeometry(ByteSource& source) {
     return volume;
 }
 
+/// Where tags begin in what follows the triangles: 0 where none is found.
+std::size_t footerAt(std::string_view rest) {
+    constexpr std::string_view kRealRas("\0\0\0\2", 4), kGeometry("\0\0\0\x14valid", 9);
+    const std::size_t geometry = rest.find(kGeometry);
+    if (geometry == std::string_view::npos) return 0;
+    constexpr std::size_t kTagBytes = 2 * sizeof(std::int32_t);
+    const bool hasRealRas =
+        geometry >= kTagBytes && rest.substr(geometry - kTagBytes).starts_with(kRealRas);
+    return geometry - (hasRealRas ? kTagBytes : 0);
+}
+
 struct Footer {
-    bool usesRealRas = false;
+    bool usesRealRas = false, hasGeometry = false;
     std::optional<ImageGeometry> volume;
 };
 
-/// The tags after the triangles; those that FreeSurfer may add after the geometry are left.
+/// The tags after the triangles, as FreeSurfer's tags.cpp has them: those behind the geometry hold
+/// their length. `source` then is behind them, or where it was if they are no tags.
 Footer decodeFooter(ByteSource& source) {
     Footer footer;
-    while (source.left() >= 2 * sizeof(std::int32_t)) {
-        const auto tag = source.number<std::int32_t>(std::endian::big);
+    const std::size_t begin = source.position();
+    for (ByteSource ahead = source; ahead.left() >= 2 * sizeof(std::int32_t); source = ahead) {
+        constexpr std::int32_t kLastTag = 1000;
+        const auto tag = ahead.number<std::int32_t>(std::endian::big);
         if (tag == kUseRealRasTag) {
-            footer.usesRealRas = source.number<std::int32_t>(std::endian::big) != 0;
-        } else if (tag == kGeometryTag) {
-            footer.volume = decodeGeometry(source);
+            footer.usesRealRas = ahead.number<std::int32_t>(std::endian::big) != 0;
+        } else if (tag == kGeometryTag && ahead.rest().starts_with("valid")) {
+            footer.volume = decodeGeometry(ahead);
+            footer.hasGeometry = true;
+        } else if (tag > kUseRealRasTag && tag <= kLastTag &&
+                   ahead.left() >= sizeof(std::uint64_t)) {
+            const auto length = ahead.number<std::uint64_t>(std::endian::big);
+            if (length > ahead.left()) break;
+            ahead.take(length);
         } else {
             break;
         }
+    }
+    if (!source.atEnd() && !footer.hasGeometry) {
+        source.seek(begin);
+        footer = {};
     }
     return footer;
 }
@@ -172,7 +197,10 @@ MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options
     for (Triangle& t : file.mesh.triangles) {
         for (VertexId& vertex : t) vertex = source.number<std::int32_t>(std::endian::big);
     }
+    const Counted counted{"triangles", triangles, 3 * sizeof(std::int32_t)};
+    requireNoMore(counted, source.rest().substr(0, footerAt(source.rest())), file.warnings);
     const Footer footer = decodeFooter(source);
+    requireNoMore(counted, source.rest(), file.warnings);
     file.frame =
         marks.frame().value_or(footer.usesRealRas ? CoordinateFrame::Ras : CoordinateFrame::TkRas);
     if (file.frame == CoordinateFrame::TkRas) file.volume = footer.volume;

@@ -222,13 +222,32 @@ void place(const GiftiSurface& found, const MeshReadOptions& options, MeshFile& 
 
 /// The numbers of an array that must be N x 3, row by row.
 template <class Stored, class T>
-std::vector<T> decodeTriples(const GiftiArray& array, std::string_view what) {
+std::vector<T> decodeTriples(const GiftiArray& array, std::string_view what, Unpacking& unpacking) {
     XmlAttributes attributes = array.attributes;
     attributes.try_emplace("Dimensionality", "2");
     attributes.try_emplace("Dim1", "3");
     const GiftiShape shape = shapeOf(attributes, what);
     if (shape.columns != 3) malformed("its " + std::string(what) + " are not an array of N x 3");
-    return decodeGiftiRows<Stored, T>(array, shape, what);
+    return decodeGiftiRows<Stored, T>(array, shape, what, unpacking);
+}
+
+/// Checks the end of files that the arrays have of their own, or share.
+/// \pre numbers of four bytes each
+void requireNoMoreExternal(const GiftiSurface& found, std::size_t coordinates, std::size_t corners,
+                           std::vector<Warning>& warnings) {
+    const auto fileOf = [](const GiftiArray& array) {
+        return array.isExternal ? attributeOr(array.attributes, "ExternalFileName", "") : "";
+    };
+    const auto check = [&](const GiftiArray& array, const char* what, std::size_t numbers,
+                           const GiftiArray& other) {
+        const bool isFirst =
+            fileOf(array) == fileOf(other) && array.text.size() > other.text.size();
+        if (!array.isExternal || isFirst) return;
+        requireNoMore({what, static_cast<std::int64_t>(numbers / 3), 3 * sizeof(float)},
+                      std::string_view(array.text).substr(sizeof(float) * numbers), warnings);
+    };
+    check(found.points, "points", coordinates, found.triangles);
+    check(found.triangles, "triangles", corners, found.points);
 }
 
 }  // namespace
@@ -268,7 +287,12 @@ void encodeGifti(const MeshRecord& record, ByteSink& sink) {
 }
 
 MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options) {
-    GiftiSurface found = surfaceOf(parseGifti(bytes));
+    Unpacking unpacking(options.storedBytes > 0 ? options.storedBytes : bytes.size());
+    GiftiFile content = parseGifti(bytes);
+    requireNoMore({"arrays", std::ssize(content.arrays), std::ssize(bytes)}, content.behind,
+                  unpacking.warnings);
+    const bool hasOthers = content.arrays.size() > 2;
+    GiftiSurface found = surfaceOf(std::move(content));
     if (found.points.attributes.empty() || found.triangles.attributes.empty()) {
         const bool hasPoints = !found.points.attributes.empty();
         const bool isEmpty = found.otherIntent.empty();
@@ -285,15 +309,18 @@ MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options) {
     requireGiftiType(found.triangles, "NIFTI_TYPE_INT32", "triangles");
 
     MeshFile file;
-    const auto points = decodeTriples<float, double>(found.points, "points");
+    const auto points = decodeTriples<float, double>(found.points, "points", unpacking);
     for (std::size_t i = 0; i < points.size(); i += 3) {
         file.mesh.points.push_back({points[i], points[i + 1], points[i + 2]});
     }
-    const auto corners = decodeTriples<std::int32_t, VertexId>(found.triangles, "triangles");
+    const auto corners =
+        decodeTriples<std::int32_t, VertexId>(found.triangles, "triangles", unpacking);
+    if (!hasOthers) requireNoMoreExternal(found, points.size(), corners.size(), unpacking.warnings);
     for (std::size_t i = 0; i < corners.size(); i += 3) {
         file.mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
     }
     place(found, options, file);
+    file.warnings = std::move(unpacking.warnings);
     return file;
 }
 

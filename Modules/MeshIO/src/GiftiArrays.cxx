@@ -42,6 +42,8 @@ public:
         if (text_ != nullptr) text_->append(text);
     }
 
+    void onRest(std::string_view rest) override { file.behind = rest; }
+
     GiftiFile file;
 
 private:

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "Bytes.h"
+#include "Counts.h"
 #include "adaptiso/MeshIO/Xml.h"
 
 namespace adaptiso::meshio {
@@ -43,6 +44,7 @@ struct GiftiFile {
     std::vector<GiftiArray> arrays;
     std::vector<std::pair<XmlAttributes, std::string>> labels;  ///< with their names
     GiftiMetadata metadata;
+    std::string_view behind{};  ///< what follows the document
 };
 
 /// \throws FileError  it is no GIFTI file
@@ -65,7 +67,7 @@ bool isPackedGifti(const std::string& encoding, std::string_view what);
 /// The numbers of an array in the order in which they are stored.
 template <class Stored, class T>
 std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& shape,
-                                  std::string_view what) {
+                                  std::string_view what, Unpacking& unpacking) {
     const std::string& encoding = requireAttribute(array.attributes, "Encoding");
     if (encoding == kExternalFile && !array.isExternal) {
         const std::string file = attributeOr(array.attributes, "ExternalFileName", "");
@@ -87,6 +89,7 @@ std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& sha
                 numbers.push_back(static_cast<T>(words.realWord(what)));
             }
         }
+        requireNoMoreText({what, shape.rows, columns}, words.rest(), unpacking.warnings);
         return numbers;
     }
     const bool isPacked = !array.isExternal && isPackedGifti(encoding, what);
@@ -94,8 +97,14 @@ std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& sha
     constexpr std::int64_t kBestRatio = 1032;  // of deflate
     const std::string stored = array.isExternal ? array.text : decodeBase64(array.text);
     requireRoom(what, shape.rows, rowBytes, isPacked ? kBestRatio * stored.size() : stored.size());
-    if (isPacked) requirePlausibleSize(stored.size(), shape.rows * rowBytes);
-    const std::string bytes = isPacked ? inflated(stored, shape.rows * rowBytes) : stored;
+    unpacking.add(shape.rows * columns, sizeof(T));
+    const auto due = static_cast<std::size_t>(shape.rows * rowBytes);
+    const std::string bytes = isPacked ? inflated(stored, due) : stored;
+    // other arrays may follow in a file of their own
+    if (!array.isExternal) {
+        requireNoMore({what, shape.rows, rowBytes}, std::string_view(bytes).substr(due),
+                      unpacking.warnings);
+    }
     const bool isBig = attributeOr(array.attributes, "Endian", "LittleEndian") == "BigEndian";
     const std::int64_t count = shape.rows * columns;
     numbers.reserve(count);
@@ -109,8 +118,8 @@ std::vector<T> decodeGiftiNumbers(const GiftiArray& array, const GiftiShape& sha
 /// decodeGiftiNumbers() row by row, whatever the array's order.
 template <class Stored, class T>
 std::vector<T> decodeGiftiRows(const GiftiArray& array, const GiftiShape& shape,
-                               std::string_view what) {
-    std::vector<T> numbers = decodeGiftiNumbers<Stored, T>(array, shape, what);
+                               std::string_view what, Unpacking& unpacking) {
+    std::vector<T> numbers = decodeGiftiNumbers<Stored, T>(array, shape, what, unpacking);
     const bool byColumns =
         attributeOr(array.attributes, "ArrayIndexingOrder", "RowMajorOrder") == "ColumnMajorOrder";
     if (!byColumns || shape.columns == 1) return numbers;

@@ -10,6 +10,7 @@
 #include "Fiff.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
+#include "adaptiso/Core/Surplus.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextLines.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -251,8 +252,15 @@ std::string storedName(std::string_view name) {
     return stored;
 }
 
-std::string unusedName(std::string name, std::set<std::string>& taken) {
-    while (!taken.insert(name).second) name += '_';
+std::string TakenNames::unused(std::string name) {
+    const std::string first = name;
+    for (int tries = 0; tries < 4; ++tries, name += '_') {
+        if (taken_.insert(name).second) return name;
+    }
+    std::size_t& number = numbers_[first];
+    do {
+        name = first + "_" + std::to_string(++number);
+    } while (!taken_.insert(name).second);
     return name;
 }
 
@@ -305,14 +313,24 @@ MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::strin
 
 MeshFile decodeMesh(std::string_view bytes, std::string_view name, const MeshReadOptions& options) {
     const bool isPacked = bytes.starts_with(kGzipMagic);
+    const std::size_t storedBytes = bytes.size();
+    std::string_view behind;
     const std::string unpacked = meshio::naming(name, [&] {
         if (!isPacked) return std::string();
         const std::string head = meshio::gunzipped(bytes, kMeshHeadBytes);
         if (!recognizeMeshFormat(head, 0)) meshio::refuseOtherContent(head, 0, name, true);
-        return meshio::gunzipped(bytes, std::string().max_size());
+        return meshio::gunzipped(bytes, std::string().max_size(), &behind);
     });
     if (isPacked) bytes = unpacked;
-    return decodeMesh(bytes, formatOf(bytes, name, isPacked), name, options);
+    MeshReadOptions unpackedOptions = options;
+    if (isPacked) unpackedOptions.storedBytes = storedBytes;
+    MeshFile file = decodeMesh(bytes, formatOf(bytes, name, isPacked), name, unpackedOptions);
+    if (!areZeros(behind)) {
+        file.warnings.push_back({"trailing-bytes",
+                                 "something that is no compressed data follows the compressed "
+                                 "surface; it was left out"});
+    }
+    return file;
 }
 
 MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& options) {

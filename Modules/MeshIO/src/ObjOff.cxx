@@ -12,6 +12,7 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "Counts.h"
 
 namespace adaptiso::meshio {
 
@@ -238,6 +239,22 @@ public:
     }
     std::size_t left() const { return source_.left(); }
 
+    /// From the next line that is not empty on.
+    std::string_view rest() {
+        for (ByteSource ahead = source_; !ahead.atEnd(); source_ = ahead) {
+            const std::string_view line = ahead.line();
+            if (!trimmed(line.substr(0, findComment(line))).empty()) break;
+        }
+        return source_.rest();
+    }
+
+    /// Lines that are not empty.
+    std::int64_t countLeft() const {
+        std::int64_t count = 0;
+        for (OffLines lines = *this; !lines.rest().empty(); lines.source_.line()) ++count;
+        return count;
+    }
+
     FrameMarks marks;
 
 private:
@@ -281,8 +298,9 @@ MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options) {
     if (trimmed(line.rest()).empty()) line = lines.next("the number of points");
     const std::int64_t points = line.integerWord("the number of points");
     const std::int64_t triangles = line.integerWord("the number of faces");
-    requireRoom("points", points, 5, lines.left());    // at least "0 0 0"
-    requireRoom("faces", triangles, 7, lines.left());  // at least "3 0 0 0"
+    requireRoom("points", points, 5, lines.left());  // at least "0 0 0"
+    Counted faces{"faces", triangles, 4};
+    if (!isUnset(triangles)) requireRoom("faces", triangles, 7, lines.left());  // "3 0 0 0"
 
     MeshFile file;
     PointColors colors(options.keepsPointArrays && hasColors);
@@ -293,13 +311,18 @@ MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options) {
         colors.add(line, ColorScale::Byte);
     }
     file.pointArrays = colors.take(file.mesh.points.size());
-    file.mesh.triangles.resize(triangles);
+    if (const std::int64_t there = isUnset(faces.count) ? lines.countLeft() : 0; there > 0) {
+        setToThere(faces, there, file.warnings);
+    }
+    requireRoom(faces.what, faces.count, 7, lines.left());
+    file.mesh.triangles.resize(static_cast<std::size_t>(faces.count));
     for (Triangle& t : file.mesh.triangles) {
         line = lines.next("a face");
         const std::int64_t corners = line.integerWord("the number of corners");
         if (corners != 3) refusePolygon(corners);
         for (VertexId& vertex : t) vertex = line.integerWord("a face's vertex");
     }
+    requireNoMoreText(faces, lines.rest(), file.warnings);
     file.frame = lines.marks.frame();
     return file;
 }

@@ -5,6 +5,7 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "Counts.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
@@ -81,6 +82,7 @@ MeshFile decodeFreeSurferTri(std::string_view bytes) {
             t[corner] = static_cast<VertexId>(corners[corner]) - 1;
         }
     }
+    requireNoMoreText({"triangles", triangles.count(), 3}, source.rest(), file.warnings);
     return file;
 }
 
@@ -133,6 +135,7 @@ MeshFile decodeOpenMeeg(std::string_view bytes) {
     for (Triangle& t : file.mesh.triangles) {
         for (VertexId& vertex : t) vertex = source.integerWord("a triangle's vertex");
     }
+    requireNoMoreText({"triangles", triangles, 3}, source.rest(), file.warnings);
     return file;
 }
 

@@ -9,13 +9,13 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "Counts.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
@@ -170,6 +170,30 @@ public:
         return encoding_ == Encoding::Text ? 2 : static_cast<std::int64_t>(bytesPerPixel(type));
     }
 
+    /// What one value counts for: its bytes; in text 1.
+    std::int64_t sizeOf(PixelType type) const {
+        return encoding_ == Encoding::Text ? 1 : static_cast<std::int64_t>(bytesPerPixel(type));
+    }
+
+    /// Rows of this size up to the file's end.
+    std::int64_t rowsLeft(std::int64_t rowSize) const {
+        if (encoding_ != Encoding::Text) {
+            return static_cast<std::int64_t>(source_.left()) / rowSize;
+        }
+        ByteSource after = source_;
+        if (!isFirst_) after.line();
+        return areRowsLines_ ? static_cast<std::int64_t>(lineCount(after.rest())) : 0;
+    }
+
+    void requireNoMoreRows(const Counted& counted, std::vector<Warning>& warnings) {
+        if (areRowsLines_ && !isFirst_) source_.line();
+        if (encoding_ == Encoding::Text) {
+            requireNoMoreText(counted, source_.rest(), warnings);
+        } else {
+            requireNoMore(counted, source_.rest(), warnings);
+        }
+    }
+
 private:
     /// Lines that are not blank.
     static std::uint64_t lineCount(std::string_view text) {
@@ -199,6 +223,18 @@ void requireElementRoom(const Element& element, const ValueReader& values, std::
     if (least == 0) malformed("its element " + printable(element.name) + " has no property");
     requireRoom(printable(element.name), element.count, least,
                 left + 1);  // the last value needs no space
+}
+
+/// Rows of an element, lists as those of triangles.
+Counted countedRows(const Element& element, const ValueReader& values) {
+    Counted counted{element.name, element.count, 0};
+    for (const Property& property : element.properties) {
+        const std::int64_t each = values.sizeOf(property.type);
+        counted.each += property.isList ? values.sizeOf(property.countType) + 3 * each : each;
+    }
+    if (element.name == "face") counted.what = "faces";
+    if (element.name == "vertex") counted.what = "vertices";
+    return counted;
 }
 
 /// Where the values of a vertex go: its place, its normal, a colour, arrays of their own.
@@ -329,16 +365,16 @@ std::string_view nameOf(PixelType type) {
 }
 
 /// A word, and not one that is taken.
-std::string propertyName(const std::string& name, std::set<std::string>& taken) {
+std::string propertyName(const std::string& name, TakenNames& taken) {
     std::string word = name.empty() ? "values" : name;
     for (char& c : word) {
         if (c <= ' ' || c > '~') c = '_';
     }
-    return unusedName(std::move(word), taken);
+    return taken.unused(std::move(word));
 }
 
 std::vector<Column> columnsOf(const std::vector<PointArray>& arrays) {
-    std::set<std::string> taken{"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
+    TakenNames taken({"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"});
     std::vector<Column> columns;
     bool hasColors = false;
     for (const PointArray& array : arrays) {
@@ -424,17 +460,29 @@ void encodePly(const MeshRecord& record, ByteSink& sink) {
 
 MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
     ByteSource source(bytes);
-    const Header header = parseHeader(source, options);
+    Header header = parseHeader(source, options);
+    if (header.elements.empty()) malformed("its header names no element");
+    Element& last = header.elements.back();
+    const bool isOpenEnded = last.name == "face" && isUnset(last.count);
     std::uint64_t rows = 0;
     for (const Element& element : header.elements) {
+        if (isOpenEnded && &element == &last) break;
         rows += static_cast<std::uint64_t>(std::clamp<std::int64_t>(element.count, 0, kMostRows));
     }
     ValueReader values(source, header.encoding, rows);
     MeshFile file;
     file.frame = header.marks.frame();
-    for (const Element& element : header.elements) {
+    Counted counted;
+    for (Element& element : header.elements) {
+        if (isOpenEnded && &element == &last) {
+            Counted faces = countedRows(last, values);
+            const std::int64_t there = faces.each > 0 ? values.rowsLeft(faces.each) : 0;
+            if (there > 0) setToThere(faces, there, file.warnings);
+            element.count = faces.count;
+        }
         if (element.count == 0) continue;
         requireElementRoom(element, values, source.left());
+        counted = countedRows(element, values);
         if (element.name == "vertex") {
             readVertices(element, options.keepsPointArrays, values, file);
         } else if (element.name == "face") {
@@ -447,6 +495,7 @@ MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
             }
         }
     }
+    if (counted.count > 0) values.requireNoMoreRows(counted, file.warnings);
     return file;
 }
 

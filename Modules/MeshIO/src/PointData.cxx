@@ -20,8 +20,10 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "Counts.h"
 #include "GiftiArrays.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/MghFooter.h"
 
 namespace adaptiso::meshio {
 
@@ -52,7 +54,7 @@ PointLabel labelOf(const XmlAttributes& attributes, const std::string& name) {
     return label;
 }
 
-PointValues decodeArray(const GiftiArray& stored) {
+PointValues decodeArray(const GiftiArray& stored, Unpacking& unpacking) {
     const XmlAttributes& attributes = stored.attributes;
     PointValues array;
     array.intent = storedName(attributeOr(attributes, "Intent", "NIFTI_INTENT_NONE"));
@@ -67,11 +69,13 @@ PointValues decodeArray(const GiftiArray& stored) {
     array.metadata = kept(stored.metadata, true);
     const std::string& type = requireAttribute(attributes, "DataType");
     if (type == "NIFTI_TYPE_FLOAT32") {
-        array.values = decodeGiftiRows<float, float>(stored, shape, "values");
+        array.values = decodeGiftiRows<float, float>(stored, shape, "values", unpacking);
     } else if (type == "NIFTI_TYPE_INT32") {
-        array.values = decodeGiftiRows<std::int32_t, std::int32_t>(stored, shape, "values");
+        array.values =
+            decodeGiftiRows<std::int32_t, std::int32_t>(stored, shape, "values", unpacking);
     } else if (type == "NIFTI_TYPE_UINT8") {
-        array.values = decodeGiftiRows<std::uint8_t, std::int32_t>(stored, shape, "values");
+        array.values =
+            decodeGiftiRows<std::uint8_t, std::int32_t>(stored, shape, "values", unpacking);
     } else {
         unsupported("its values are " + printable(type), "save them as NIFTI_TYPE_FLOAT32");
     }
@@ -118,7 +122,13 @@ PointData decodeGiftiData(std::string_view bytes) {
         data.labels.push_back(labelOf(attributes, name));
     }
     data.metadata = kept(found.metadata, false);
-    for (const GiftiArray& array : found.arrays) data.arrays.push_back(decodeArray(array));
+    Unpacking unpacking(bytes.size());
+    requireNoMore({"arrays", std::ssize(found.arrays), std::ssize(bytes)}, found.behind,
+                  unpacking.warnings);
+    for (const GiftiArray& array : found.arrays) {
+        data.arrays.push_back(decodeArray(array, unpacking));
+    }
+    data.warnings = std::move(unpacking.warnings);
     if (data.arrays.empty()) damaged("it holds no values");
     const PointValues& first = data.arrays.front();
     const auto size = [](const auto& values) { return std::ssize(values); };
@@ -196,6 +206,10 @@ PointData decodeMghData(std::string_view bytes) {
         data.arrays.push_back(isReal(type) ? frameOf<float>(source, data.points, type)
                                            : frameOf<std::int32_t>(source, data.points, type));
     }
+    // read as FreeSurfer's volumes are
+    if (mghFooterOf(source.rest(), source.left()) != MghFooter::Whole) {
+        requireNoMore({"frames", frames, data.points * each}, source.rest(), data.warnings);
+    }
     return data;
 }
 
@@ -254,6 +268,7 @@ PointData decodeCurv(std::string_view bytes) {
         for (std::int64_t i = 0; i < data.points; ++i) {
             values.push_back(source.number<float>(kBig));
         }
+        meshio::requireNoMore({"values", data.points, sizeof(float)}, source.rest(), data.warnings);
     } else {
         data.points = int24(source);
         int24(source);  // triangles
@@ -286,10 +301,10 @@ void skipText(ByteSource& source) {
     source.take(static_cast<std::size_t>(length));
 }
 
-/// Damage unless the table is whole. Bytes behind it are ignored.
-void requireTable(std::string_view table) {
+/// Damage unless the table is whole. \return  the bytes behind it
+std::string_view requireTable(std::string_view table) {
     ByteSource source(table);
-    if (source.atEnd() || source.number<std::int32_t>(kBig) == 0) return;
+    if (source.atEnd() || source.number<std::int32_t>(kBig) == 0) return source.rest();
     constexpr std::size_t kChannels = 4 * sizeof(std::int32_t);
     std::int64_t entries = source.number<std::int32_t>(kBig);
     const bool isOld = entries > 0;
@@ -304,6 +319,7 @@ void requireTable(std::string_view table) {
         skipText(source);
         source.take(kChannels);
     }
+    return source.rest();
 }
 
 PointData decodeAnnot(std::string_view bytes) {
@@ -321,7 +337,8 @@ PointData decodeAnnot(std::string_view bytes) {
         }
         labels[static_cast<std::size_t>(point)] = source.number<std::int32_t>(kBig);
     }
-    requireTable(source.rest());
+    meshio::requireNoMore({"labels", data.points, 2 * sizeof(std::int32_t)},
+                          requireTable(source.rest()), data.warnings);
     data.annotTable = source.rest();
     data.arrays.push_back({{}, std::move(labels), 1, {}});
     return data;

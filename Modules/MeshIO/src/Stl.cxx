@@ -1,5 +1,7 @@
 // STL. Binary: 80 bytes of header, uint32 count, 50 bytes a triangle (float32 normal, three
-// corners, uint16 attribute), little endian. Text ("solid ...") is read, not written.
+// corners, uint16 count of attribute bytes, which follow it), little endian. Programs put a colour
+// in place of that count (VisCAM, SolidView, Materialise Magics). Text ("solid ...") is read, not
+// written.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -7,6 +9,8 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
+#include "Counts.h"
+#include "adaptiso/Core/Surplus.h"
 #include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso::meshio {
@@ -74,24 +78,68 @@ void encodeVec(const Vec3& v, ByteSink& sink) {
     for (int axis = 0; axis < 3; ++axis) sink.littleEndian(static_cast<float>(v[axis]));
 }
 
+std::uint16_t attributeOf(std::string_view record) {
+    return loadAs<std::uint16_t>(record.data() + kTriangleBytes - sizeof(std::uint16_t),
+                                 std::endian::little);
+}
+
+/// True if each triangle is followed by as many bytes as its attribute counts: such records end
+/// where the file does, or before it.
+bool haveAttributeBytes(ByteSource source, std::int64_t count) {
+    const std::size_t all = source.left();
+    if (all <= kTriangleBytes * static_cast<std::size_t>(count)) return false;
+    for (std::int64_t i = 0; i < count; ++i) {
+        if (source.left() < kTriangleBytes) return false;
+        const std::size_t more = attributeOf(source.take(kTriangleBytes));
+        if (source.left() < more) return false;
+        source.take(more);
+    }
+    const bool isLonger = all - source.left() > kTriangleBytes * static_cast<std::size_t>(count);
+    return isLonger && source.left() < kTriangleBytes;
+}
+
 MeshFile decodeBinary(ByteSource source, FrameMarks marks) {
     MeshFile file;
     marks.addText(source.take(kHeaderBytes));
     file.frame = marks.frame();
-    const std::int64_t count = source.number<std::uint32_t>(std::endian::little);
-    requireRoom("triangles", count, kTriangleBytes, source.left());
-    std::vector<Corner> corners(3 * count);
+    Counted triangles{"triangles", source.number<std::uint32_t>(std::endian::little),
+                      kTriangleBytes};
+    const auto there = static_cast<std::int64_t>(source.left() / kTriangleBytes);
+    if (isUnset(triangles.count) && there > 0 && !areZeros(source.rest())) {
+        setToThere(triangles, there, file.warnings);
+    }
+    requireRoom(triangles.what, triangles.count, kTriangleBytes, source.left());
+    const bool hasMore = haveAttributeBytes(source, triangles.count);
+    std::int64_t attributes = 0;
+    std::vector<Corner> corners(static_cast<std::size_t>(3 * triangles.count));
     for (std::size_t i = 0; i < corners.size(); i += 3) {
-        ByteSource record(source.take(kTriangleBytes));
+        const std::string_view bytes = source.take(kTriangleBytes);
+        ByteSource record(bytes);
         record.take(3 * sizeof(float));  // the normal follows from the corners
         for (std::size_t k = 0; k < 3; ++k) {
             for (std::uint32_t& bits : corners[i + k]) {
                 bits = coordinateBits(record.number<float>(std::endian::little));
             }
         }
+        if (attributeOf(bytes) != 0) ++attributes;
+        if (hasMore) source.take(attributeOf(bytes));
+    }
+    requireNoMore(triangles, source.rest(), file.warnings);
+    if (attributes > 0) {
+        file.warnings.push_back({"attributes-left-out",
+                                 std::to_string(attributes) + " triangles have " +
+                                     (hasMore ? "bytes of attributes behind them"
+                                              : "a colour or a number of their own (attribute)") +
+                                     ", which were left out"});
     }
     file.mesh = welded(corners);
     return file;
+}
+
+constexpr std::int64_t kTextNumbers = 12;  // of a triangle
+
+bool beginsSolid(std::string_view text) {
+    return lowerCase(trimmed(text.substr(0, kHeaderBytes))).starts_with("solid");
 }
 
 MeshFile decodeText(ByteSource source, FrameMarks marks) {
@@ -99,10 +147,12 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
     std::vector<Corner> corners;
     std::size_t loop = 0;  // corners of the facet at this place
     bool isOpen = false;   // inside a solid
+    std::int64_t solids = 0;
     for (std::string word = lowerCase(source.word()); !word.empty();
          word = lowerCase(source.word())) {
         if (word == "solid" || word == "endsolid") {
             isOpen = word == "solid";
+            solids += isOpen;
             const std::size_t begin = source.position();
             std::string_view name = source.line();
             if (const std::size_t facet = lowerCase(name).find("facet normal");
@@ -111,6 +161,10 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
                 source.seek(begin + facet);
             }
             marks.addText(name);
+            if (isOpen || beginsSolid(source.rest())) continue;
+            requireNoMoreText({"triangles", std::ssize(corners) / 3, kTextNumbers}, source.rest(),
+                              file.warnings);
+            break;
         } else if (word == "vertex") {
             if (loop++ == 3) refusePolygon(4);
             for (std::uint32_t& bits : corners.emplace_back()) {
@@ -125,6 +179,10 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
     if (isOpen) {
         unsupported("it ends without the word 'endsolid'",
                     "it may be cut off: get it again, or add that line at its end if it is whole");
+    }
+    if (solids > 1) {
+        file.warnings.push_back({"several-solids", "it holds " + std::to_string(solids) +
+                                                       " solids, which were read as one surface"});
     }
     file.frame = marks.frame();
     file.mesh = welded(corners);

@@ -3,7 +3,6 @@
 // Shared by both of VTK's formats: the texts they hold, and numbers by their types.
 
 #include <cstdint>
-#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -42,11 +41,11 @@ inline void addField(std::string_view name, std::string_view text, FrameMarks& m
 /// The names of arrays in a file that holds each name once, and the normals under theirs.
 template <class Array>
 std::vector<std::string> arrayNames(const std::vector<Array>& arrays) {
-    std::set<std::string> taken{std::string(kNormalsName)};
+    TakenNames taken({std::string(kNormalsName)});
     std::vector<std::string> names;
     names.reserve(arrays.size());
     for (const Array& array : arrays) {
-        names.push_back(unusedName(array.name.empty() ? "values" : array.name, taken));
+        names.push_back(taken.unused(array.name.empty() ? "values" : array.name));
     }
     return names;
 }

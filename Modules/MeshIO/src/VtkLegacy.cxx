@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "Bytes.h"
+#include "Counts.h"
 #include "VtkFiles.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Surplus.h"
 
 namespace adaptiso::meshio {
 namespace {
@@ -48,6 +50,7 @@ public:
         decodeHead();
         while (decodeSection()) {
         }
+        requireNoMoreSections();
         // 3D Slicer names the frame in the header, and takes fields of the file it read along
         file_.frame = marks_.frame() ? marks_.frame() : fieldMarks_.frame();
         return std::move(file_);
@@ -75,8 +78,9 @@ private:
         }
     }
 
-    /// False at the end, and at a section of unknown length: what follows is no part of a surface.
+    /// False at the end, and at what is no section, or one of unknown length.
     bool decodeSection() {
+        const std::size_t begin = source_.position();
         const std::string section = lowerCase(source_.word());
         ByteSource line(source_.line());
         if (section == "points") {
@@ -92,9 +96,13 @@ private:
             isPointData_ = section == "point_data";
         } else if (section == "normals") {
             decodeNormals(line);
-        } else if (section == "vectors") {
+        } else if (const std::int64_t components = componentsOf(section); components > 0) {
             const std::string_view name = line.requireWord("a name");
-            decodeArray(name, tuples_, 3, parseType(line.requireWord("a type")));
+            decodeArray(name, tuples_, components, parseType(line.requireWord("a type")));
+        } else if (section == "texture_coordinates") {
+            const std::string_view name = line.requireWord("a name");
+            const std::int64_t dimensions = line.integerWord("components");
+            decodeArray(name, tuples_, dimensions, parseType(line.requireWord("a type")));
         } else if (section == "scalars") {
             decodeScalars(line);
         } else if (section == "color_scalars") {
@@ -108,9 +116,37 @@ private:
         } else if (section == "metadata") {
             skipMetadata();
         } else {
+            source_.seek(begin);
             return false;
         }
         return true;
+    }
+
+    /// Of sections that name an array and its type; 0 for others.
+    static std::int64_t componentsOf(std::string_view section) {
+        constexpr std::pair<std::string_view, std::int64_t> kSections[] = {
+            {"vectors", 3},    {"tensors", 9},      {"tensors6", 6},
+            {"global_ids", 1}, {"pedigree_ids", 1}, {"edge_flags", 1}};
+        for (const auto& [name, components] : kSections) {
+            if (section == name) return components;
+        }
+        return 0;
+    }
+
+    void requireNoMoreSections() {
+        const std::string_view rest = trimmed(source_.rest());
+        const std::size_t word = std::min(rest.find_first_of(" \t\r\n"), rest.size());
+        const bool isSection = word > 3 && rest.substr(0, word).find_first_not_of(
+                                               "ABCDEFGHIJKLMNOPQRSTUVWXYZ_") == rest.npos;
+        if (!isBinary_ || isSection) {
+            requireNoMoreText(last_, rest, file_.warnings);
+            return;
+        }
+        requireNoMore(last_, rest, file_.warnings);
+        if (std::ssize(rest) >= last_.each && !areZeros(rest)) {
+            malformed("it holds " + std::to_string(rest.size()) + " bytes behind its " +
+                      std::string(last_.what) + " that are no section of VTK's");
+        }
     }
 
     void decodePoints(ByteSource& line) {
@@ -128,11 +164,19 @@ private:
     }
 
     void decodePolygons(ByteSource& line) {
+        ByteSource counts = line;
+        const std::int64_t count = counts.integerWord("the number of polygons");
         const std::vector<std::int64_t> cells = readCells(line);
         for (std::size_t i = 0; i < cells.size(); i += 4) {
             if (cells[i] != 3) refusePolygon(cells[i]);
             if (i + 4 > cells.size()) damaged("its list of polygons breaks off");
             file_.mesh.triangles.push_back({cells[i + 1], cells[i + 2], cells[i + 3]});
+        }
+        last_ = {"polygons", count, 4 * (isBinary_ ? std::int64_t{sizeof(std::int32_t)} : 1)};
+        const std::int64_t there = std::ssize(cells) / 4 + (hasOffsets_ && count > 0 ? 1 : 0);
+        if (there != count) {
+            damaged("it counts " + std::to_string(count) + " polygons, and its list has " +
+                    std::to_string(there));
         }
     }
 
@@ -148,6 +192,11 @@ private:
     std::vector<std::int64_t> readOffsetCells(std::int64_t offsetCount, std::int64_t cornerCount) {
         const auto offsets = readNamedIntegers("offsets", offsetCount);
         const auto corners = readNamedIntegers("connectivity", cornerCount);
+        if (!offsets.empty() && (offsets.front() != 0 || offsets.back() != cornerCount)) {
+            damaged("its cells' offsets lead from " + std::to_string(offsets.front()) + " to " +
+                    std::to_string(offsets.back()) + ", must be from 0 to " +
+                    std::to_string(cornerCount));
+        }
         std::vector<std::int64_t> cells;
         for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
             const std::int64_t begin = offsets[i], end = offsets[i + 1];
@@ -290,11 +339,13 @@ private:
     }
 
     void requireNumbers(std::int64_t tuples, std::int64_t components, PixelType type,
-                        std::string_view what) const {
+                        std::string_view what) {
         requireRoom("components", components, 1, source_.left());
         const std::int64_t each =
             isBinary_ ? static_cast<std::int64_t>(bytesPerPixel(type)) : 2;  // a digit and a space
-        if (components > 0) requireRoom(what, tuples, components * each, source_.left() + 1);
+        if (components <= 0) return;
+        requireRoom(what, tuples, components * each, source_.left() + 1);
+        last_ = {what, tuples, components * (isBinary_ ? each : 1)};
     }
 
     void skipNumbers(std::int64_t tuples, std::int64_t components, PixelType type) {
@@ -343,6 +394,7 @@ private:
 
     ByteSource source_;
     MeshFile file_;
+    Counted last_{"sections", 0, 1};  ///< the numbers before this place
     bool keepsArrays_;
     FrameMarks marks_, fieldMarks_;  ///< of the header, and of field data
     bool isBinary_ = false;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "Bytes.h"
+#include "Counts.h"
 #include "VtkFiles.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
@@ -44,7 +45,9 @@ public:
         if (array_ != nullptr && path_.size() == arrayDepth_) array_->text.append(text);
     }
     bool isDone() const override { return !appended.empty(); }
+    void onRest(std::string_view rest) override { behind = rest; }
 
+    std::string_view behind;  ///< what follows the document
     XmlAttributes file, piece, appended;
     DataArray points, normals, connectivity, offsets, frame, slicerSpace;
     std::deque<DataArray> values;  ///< at points, where they are kept
@@ -113,8 +116,10 @@ PixelType typeOf(const XmlAttributes& attributes, std::string_view what) {
 /// Gets at the bytes of arrays, however they are kept.
 class ArrayReader {
 public:
-    ArrayReader(const VtpHandler& handler, std::string_view appendedData)
-        : appendedData_(appendedData),
+    /// \param fileBytes  of the whole file
+    ArrayReader(const VtpHandler& handler, std::string_view appendedData, std::size_t fileBytes)
+        : unpacking(fileBytes),
+          appendedData_(appendedData),
           appendedIsRaw_(attributeOr(handler.appended, "encoding", "base64") == "raw"),
           order_(attributeOr(handler.file, "byte_order", "LittleEndian") == "BigEndian"
                      ? std::endian::big
@@ -127,6 +132,11 @@ public:
                         "save it with zlib or without");
         }
     }
+
+    Unpacking unpacking;
+
+    /// Where the appended data end that were read.
+    std::size_t appendedEnd() const { return appendedEnd_; }
 
     /// Numbers of any stored type, `count` of them.
     template <class T>
@@ -161,8 +171,7 @@ public:
 
 private:
     template <class T>
-    static std::vector<T> textNumbers(std::string_view text, std::int64_t count,
-                                      std::string_view what) {
+    std::vector<T> textNumbers(std::string_view text, std::int64_t count, std::string_view what) {
         requireRoom(what, count, 2, text.size() + 1);  // a digit and a space each
         ByteSource words(text);
         std::vector<T> values(count);
@@ -173,6 +182,7 @@ private:
                 value = words.realWord(what);
             }
         }
+        requireNoMoreText({what, count, 1}, words.rest(), unpacking.warnings);
         return values;
     }
 
@@ -187,7 +197,7 @@ private:
             std::max(array.text.size(), appendedData_.size()) * (isCompressed_ ? kBestRatio : 1);
         requireRoom(what, count, sizeof(Stored), mostBytes);
         const std::size_t due = count * sizeof(Stored);
-        requirePlausibleSize(isCompressed_ ? mostBytes / kBestRatio : mostBytes, due);
+        unpacking.add(count, std::max(sizeof(T), sizeof(Stored)));
         const std::string bytes = blockBytes(array, due, what);
         if (bytes.size() != due) {
             damaged("its " + std::string(what) + " take " + std::to_string(bytes.size()) +
@@ -205,14 +215,20 @@ private:
     std::string blockBytes(const DataArray& array, std::size_t most, std::string_view what) {
         std::string_view data = trimmed(array.text);
         bool isRaw = false;
-        if (requireAttribute(array.attributes, "format") == "appended") {
+        const bool isAppended = requireAttribute(array.attributes, "format") == "appended";
+        if (isAppended) {
             const std::int64_t offset =
                 toInteger(requireAttribute(array.attributes, "offset"), "an offset");
             requireRoom("bytes before its " + std::string(what), offset, 1, appendedData_.size());
             data = appendedData_.substr(offset);
             isRaw = appendedIsRaw_;
         }
-        return isCompressed_ ? unpackedBlocks(data, isRaw, most) : plainBlock(data, isRaw);
+        std::string bytes =
+            isCompressed_ ? unpackedBlocks(data, isRaw, most) : plainBlock(data, isRaw);
+        if (isAppended) {
+            appendedEnd_ = std::max(appendedEnd_, appendedData_.size() - data.size());
+        }
+        return bytes;
     }
 
     /// The first `count` bytes that `data` stands for; moves `data` behind them.
@@ -234,7 +250,7 @@ private:
     }
 
     /// A word with the number of bytes, then these; both in one run of base64.
-    std::string plainBlock(std::string_view data, bool isRaw) const {
+    std::string plainBlock(std::string_view& data, bool isRaw) const {
         std::string_view ahead = data;
         const std::uint64_t size = headerWord(takeBytes(ahead, wordBytes_, isRaw), 0);
         if (size > data.size()) damaged("its data is cut off");
@@ -243,7 +259,7 @@ private:
 
     /// Number of blocks, bytes of a block, of the last one (0: full), packed bytes of each; then,
     /// in a second run of base64, the blocks.
-    std::string unpackedBlocks(std::string_view data, bool isRaw, std::size_t most) const {
+    std::string unpackedBlocks(std::string_view& data, bool isRaw, std::size_t most) const {
         std::string_view ahead = data;
         const std::uint64_t blocks = headerWord(takeBytes(ahead, wordBytes_, isRaw), 0);
         if (blocks > data.size() / wordBytes_) damaged("its table of blocks is cut off");
@@ -273,6 +289,7 @@ private:
     }
 
     std::string_view appendedData_;
+    std::size_t appendedEnd_ = 0;
     bool appendedIsRaw_;
     std::endian order_;
     std::size_t wordBytes_;
@@ -285,6 +302,17 @@ std::string_view findAppendedData(std::string_view bytes, std::size_t position) 
     const std::size_t mark = end == std::string_view::npos ? end : bytes.find('_', end);
     if (mark == std::string_view::npos) damaged("its appended data does not begin with '_'");
     return bytes.substr(mark + 1);
+}
+
+/// What follows the document that ends behind its appended data; empty where it does not end.
+std::string_view behindAppended(std::string_view appendedData, std::size_t dataEnd) {
+    std::string_view rest = appendedData.substr(dataEnd);
+    for (const std::string_view mark : {"</AppendedData", "</VTKFile", ">"}) {
+        const std::size_t at = rest.find(mark);
+        if (at == std::string_view::npos) return {};
+        rest = rest.substr(at + mark.size());
+    }
+    return trimmed(rest);
 }
 
 std::int64_t pieceCount(const VtpHandler& handler, std::string_view name) {
@@ -467,8 +495,10 @@ MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
     VtpHandler handler(options.keepsPointArrays);
     const std::size_t end = parseXml(bytes, handler);
     if (handler.piece.empty()) malformed("it has no piece");
-    ArrayReader reader(handler,
-                       handler.isDone() ? findAppendedData(bytes, end) : std::string_view());
+    const std::string_view appended =
+        handler.isDone() ? findAppendedData(bytes, end) : std::string_view();
+    ArrayReader reader(handler, appended,
+                       options.storedBytes > 0 ? options.storedBytes : bytes.size());
     MeshFile file;
     const std::int64_t points = pieceCount(handler, "NumberOfPoints");
     requireRoom("points", points, 1, 1032 * bytes.size());  // so that 3 * points can't overflow
@@ -496,6 +526,11 @@ MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
         addField(requireAttribute(field->attributes, "Name"), reader.firstString(*field), marks);
     }
     file.frame = marks.frame();
+    requireNoMore(
+        {"triangles", std::ssize(file.mesh.triangles), std::ssize(bytes)},
+        handler.isDone() ? behindAppended(appended, reader.appendedEnd()) : handler.behind,
+        reader.unpacking.warnings);
+    file.warnings = std::move(reader.unpacking.warnings);
     return file;
 }
 

@@ -12,6 +12,7 @@
 
 #include "Bytes.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Surplus.h"
 
 // expat 2.9 deprecates the names without 64
 #if XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION < 9
@@ -34,6 +35,7 @@ public:
     }
 
     bool isStopped() const { return isStopped_; }
+    bool isEnded() const { return isEnded_; }  ///< at the end of the outermost element
     std::size_t stopPosition() const { return stopPosition_; }
     void rethrow() const {
         if (exception_) std::rethrow_exception(exception_);
@@ -57,11 +59,17 @@ private:
             XmlAttributes attributes;
             for (; *pairs != nullptr; pairs += 2) attributes[pairs[0]] = pairs[1];
             bridge.handler_.onStart(name, attributes);
+            ++bridge.depth_;
             if (bridge.handler_.isDone()) bridge.stop();
         });
     }
     static void XMLCALL onEnd(void* self, const XML_Char* name) {
-        guarded(self, [&](Bridge& bridge) { bridge.handler_.onEnd(name); });
+        guarded(self, [&](Bridge& bridge) {
+            bridge.handler_.onEnd(name);
+            if (--bridge.depth_ > 0) return;
+            bridge.isEnded_ = true;
+            bridge.stop();
+        });
     }
     static void XMLCALL onText(void* self, const XML_Char* text, int length) {
         guarded(self, [&](Bridge& bridge) {
@@ -85,11 +93,37 @@ private:
     XML_Parser parser_;
     XmlHandler& handler_;
     std::exception_ptr exception_;
-    bool isStopped_ = false;
+    bool isStopped_ = false, isEnded_ = false;
+    int depth_ = 0;
     std::size_t stopPosition_ = 0;
 };
 
+/// `text` without blanks, comments and instructions before its content.
+std::string_view withoutMisc(std::string_view text) {
+    for (text = trimmed(text); text.starts_with("<!--") || text.starts_with("<?");) {
+        const std::string_view mark = text.starts_with("<?") ? "?>" : "-->";
+        const std::size_t end = text.find(mark);
+        if (end == std::string_view::npos) break;
+        text = trimmed(text.substr(end + mark.size()));
+    }
+    return text;
+}
+
+/// \param position  of the outermost element's end
+std::size_t endDocument(std::string_view bytes, std::size_t position, XmlHandler& handler) {
+    const std::size_t end = std::min(bytes.find('>', position), bytes.size() - 1) + 1;
+    const std::string_view rest = bytes.substr(end);
+    const bool isSecondFile = rest.find("<?xml") != std::string_view::npos;
+    const std::string_view content = isSecondFile ? trimmed(rest) : withoutMisc(rest);
+    if (!content.empty()) handler.onRest(content);
+    return end;
+}
+
 }  // namespace
+
+void XmlHandler::onRest(std::string_view rest) {
+    damaged("its XML goes on behind its end, with " + printable(rest));
+}
 
 const std::string& requireAttribute(const XmlAttributes& attributes, std::string_view name) {
     const auto found = attributes.find(name);
@@ -115,6 +149,7 @@ std::size_t parseXml(std::string_view bytes, XmlHandler& handler) {
         const XML_Status status =
             XML_Parse(parser.get(), piece.data(), static_cast<int>(piece.size()), isLast);
         bridge.rethrow();
+        if (bridge.isEnded()) return endDocument(bytes, bridge.stopPosition(), handler);
         if (bridge.isStopped()) return bridge.stopPosition();
         if (status != XML_STATUS_OK) {
             damaged("its XML breaks off in line " +
@@ -193,9 +228,8 @@ std::string deflated(std::string_view bytes) {
 }
 
 void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes) {
-    constexpr std::size_t kBombBytes = std::size_t{1} << 28, kBombExpansion = 100;
-    if (bytes > kBombBytes && bytes / kBombExpansion > packedBytes) {
-        malformed("its " + std::to_string(packedBytes) + " compressed bytes claim to hold " +
+    if (!kSurfaceUnpackLimit.allows(packedBytes, bytes)) {
+        malformed("its " + std::to_string(packedBytes) + " bytes claim to hold " +
                   std::to_string(bytes) + ", as only a decompression bomb does");
     }
 }
@@ -224,7 +258,7 @@ std::string inflated(std::string_view packed, std::size_t expectedBytes) {
     return bytes;
 }
 
-std::string gunzipped(std::string_view file, std::size_t most) {
+std::string gunzipped(std::string_view file, std::size_t most, std::string_view* behind) {
     z_stream stream{};
     constexpr int kGzip = 15 + 16;
     if (inflateInit2(&stream, kGzip) != Z_OK) {
@@ -247,7 +281,9 @@ std::string gunzipped(std::string_view file, std::size_t most) {
                     " unpacked bytes");
         }
         const bool hasMore = stream.avail_in > 0 && *stream.next_in == 0x1F;
-        if (!hasMore || inflateReset(&stream) != Z_OK) break;
+        if (hasMore && inflateReset(&stream) == Z_OK) continue;
+        if (behind != nullptr) *behind = file.substr(file.size() - packed.size() - stream.avail_in);
+        break;
     }
     if (bytes.size() > most) bytes.resize(most);
     return bytes;

@@ -68,6 +68,9 @@ public:
         if (!(std::abs(value) <= kMost)) fail("a region's number is none");
         return static_cast<std::int32_t>(value);
     }
+    void requireEnd(std::string_view what) {
+        if (!next().empty()) fail("it holds more " + std::string(what) + " than it counts");
+    }
     void skipTo(std::string_view word) {
         for (std::string_view found = next(); found != word; found = next()) {
             if (found.empty()) fail("it lacks " + std::string(word));
@@ -202,6 +205,7 @@ TetrahedralMesh decodeTetgen(std::string_view nodes, std::string_view elements,
         for (int k = 0; k < attributes + markers; ++k) words.next();
         mesh.points.push_back(p);
     }
+    words.requireEnd("points");
     Words rows(elements, name);
     const std::int64_t count = rows.count();
     const auto corners = rows.number<int>(), labels = rows.number<int>();
@@ -213,6 +217,7 @@ TetrahedralMesh decodeTetgen(std::string_view nodes, std::string_view elements,
         mesh.tetrahedra.push_back(t);
         mesh.labels.push_back(rows.label());
     }
+    rows.requireEnd("elements");
     requireInRange(mesh, rows);
     turnNegative(mesh);
     return mesh;
@@ -231,6 +236,7 @@ TetrahedralMesh decodeGmsh(std::string_view bytes, std::string_view name) {
         if (!std::isfinite(squaredNorm(p))) words.fail("a point is not finite");
         mesh.points.push_back(p);
     }
+    if (words.next() != "$EndNodes") words.fail("it holds more points than it counts");
     words.skipTo("$Elements");
     const std::int64_t count = words.count();
     constexpr std::array<int, 5> kCorners{0, 2, 3, 4,
@@ -258,6 +264,7 @@ TetrahedralMesh decodeGmsh(std::string_view bytes, std::string_view name) {
         mesh.tetrahedra.push_back(t);
         mesh.labels.push_back(label);
     }
+    if (words.next() != "$EndElements") words.fail("it holds more elements than it counts");
     requireInRange(mesh, words);
     turnNegative(mesh);
     return mesh;

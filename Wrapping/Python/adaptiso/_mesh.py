@@ -283,9 +283,9 @@ def load(path: Any, *, volume: Any = None, input_coordinates: Optional[str] = No
     """
     name = checked_path("path", path)
     shape, affine = (None, None) if volume is None else _geometry_of(volume)
-    data, warning = _adaptiso.read_mesh(name, shape, affine, False, _stated(input_coordinates))
-    if warning:
-        logger.warning("%s: %s", base_name(name), warning)
+    data, warnings = _adaptiso.read_mesh(name, shape, affine, False, _stated(input_coordinates))
+    for warning in warnings:
+        logger.warning("%s", warning.of(base_name(name)))
     return Mesh._of(data)
 
 
@@ -324,8 +324,11 @@ def mesh_data_of(value: Any, keeps_faults: bool,
     if is_path(value):
         if not keeps_faults:
             return load(value, input_coordinates=input_coordinates)._data
-        return _adaptiso.read_mesh(checked_path("mesh", value), None, None, True,
-                                   input_coordinates)[0]
+        data, warnings = _adaptiso.read_mesh(checked_path("mesh", value), None, None, True,
+                                             input_coordinates)
+        for warning in warnings:
+            logger.warning("%s", warning.of(base_name(value)))
+        return data
     if isinstance(value, (tuple, list)) and len(value) == 2:
         vertices, faces = value
     elif hasattr(value, "vertices") and hasattr(value, "faces"):

@@ -277,18 +277,21 @@ std::string MeshData::notebook(const std::string& title) const {
     return notebookHtml(report, sixSides == pictures.end() ? Picture{} : *sixSides);
 }
 
-std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(
+std::pair<std::shared_ptr<MeshData>, std::vector<Warning>> readMeshData(
     const std::string& path, const std::optional<ImageGeometry>& image, bool keepsFaults,
     std::optional<CoordinateFrame> stated) {
     MeshFile file = readMesh(path, {.keepsFaults = keepsFaults, .inputCoordinates = stated});
-    std::string warning;
+    std::vector<Warning> warnings = file.warnings;
     const bool isFrameKnown = file.frame.has_value();
     if (!isFrameKnown) {
         if (image) {
             throw InvalidInput(path + ": does not say its coordinate frame, so where it lies in " +
                                "the image is not known" + kStateIt);
         }
-        if (!keepsFaults) warning = "does not say its coordinate frame; points are as stored";
+        if (!keepsFaults) {
+            warnings.push_back(
+                {"guessed-frame", "does not say its coordinate frame; points are as stored"});
+        }
         file.frame = CoordinateFrame::Ras;
     }
     if (!file.volume && image && needsVolume(*file.frame)) {
@@ -309,7 +312,7 @@ std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(
         data->setImage(*file.volume);
     }
     data->setFrameKnown(isFrameKnown);
-    return {data, warning};
+    return {data, warnings};
 }
 
 namespace {

@@ -125,9 +125,9 @@ private:
 /// \param image        that tkRAS and voxel indices refer to, or none
 /// \param keepsFaults  points as stored, with all that is wrong
 /// \param stated       the frame, overriding the file's own; or none
-/// \return the mesh, and a warning (empty: none)
+/// \return the mesh, and the warnings of reading
 /// \throws FileError, InvalidInput  voxel indices without an image; an image and no frame
-std::pair<std::shared_ptr<MeshData>, std::string> readMeshData(
+std::pair<std::shared_ptr<MeshData>, std::vector<Warning>> readMeshData(
     const std::string& path, const std::optional<ImageGeometry>& image, bool keepsFaults,
     std::optional<CoordinateFrame> stated);
 

@@ -13,6 +13,7 @@
 
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
 
@@ -99,6 +100,7 @@ struct MeshReadOptions {
     /// Where the data of a GIFTI file may lie that are in a file of their own; readMesh() takes the
     /// surface's folder. Empty: such files are refused.
     std::filesystem::path folder{};
+    std::size_t storedBytes = 0;  ///< of the file that the bytes were unpacked from; 0: of none
 };
 
 /// A file's content as stored: nothing is moved to another frame, but by GIFTI's matrix to
@@ -114,6 +116,7 @@ struct MeshFile {
     /// array of colours, "RGB", and so are those of OBJ and OFF. Arrays of text are passed over.
     std::vector<PointArray> pointArrays{};
     const MeshFormat* format = nullptr;  ///< as its content says; never null after reading
+    std::vector<Warning> warnings{};     ///< of reading; without the file's name
 };
 
 /// Reads a triangle surface, gzipped or not, in the format that its content says, whatever the

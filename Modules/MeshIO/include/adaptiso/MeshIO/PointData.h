@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "adaptiso/Core/Warning.h"
+
 namespace adaptiso {
 
 /// A kind of file that holds values at the points of a surface in another file.
@@ -54,6 +56,7 @@ struct PointData {
     /// annot: its table, as stored, with all that follows the labels. It may be empty.
     std::string annotTable;
     std::vector<std::pair<std::string, std::string>> metadata;  ///< GIFTI: as of an array
+    std::vector<Warning> warnings{};  ///< of reading; without the file's name
 };
 
 /// Reads values at points. Files are taken for hostile, as by readMesh(); control characters in

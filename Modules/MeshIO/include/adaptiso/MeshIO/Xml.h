@@ -26,6 +26,9 @@ public:
     virtual void onText(std::string_view text) = 0;
     /// Asked after each onStart(): true ends parsing there.
     virtual bool isDone() const { return false; }
+    /// Called with what follows the document, where that is more than blanks and comments. Refuses
+    /// it.
+    virtual void onRest(std::string_view rest);
 };
 
 /// Parses the XML in `bytes` (expat). No other file or address is opened, whatever the document
@@ -46,8 +49,7 @@ constexpr std::size_t base64Length(std::size_t bytes) {
 
 std::string deflated(std::string_view bytes);
 
-/// Damage where packed data would grow a hundredfold to more than 256 MiB, which no surface does:
-/// before anything is unpacked.
+/// Damage beyond kSurfaceUnpackLimit: before anything is unpacked.
 void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes);
 
 /// The bytes that a zlib or gzip stream holds. Grows with what comes out, never by what a header
@@ -55,8 +57,8 @@ void requirePlausibleSize(std::size_t packedBytes, std::size_t bytes);
 std::string inflated(std::string_view stream, std::size_t expectedBytes);
 
 /// Inflates a gzip file, all its members in turn, up to the first `most` bytes.
-/// Damage where it breaks off before that, or unpacks to more than 256 MiB and a hundred times its
-/// size.
-std::string gunzipped(std::string_view file, std::size_t most);
+/// Damage where it breaks off before that, or unpacks as requirePlausibleSize() refuses it.
+/// \param behind  set to what follows the last member, if all are unpacked; may be null
+std::string gunzipped(std::string_view file, std::size_t most, std::string_view* behind = nullptr);
 
 }  // namespace adaptiso::meshio

@@ -1,0 +1,317 @@
+// What a file counts, held against what it holds.
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <bit>
+#include <cstring>
+
+#include "MeshIOTestSupport.h"
+#include "adaptiso/Core/Bytes.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshIO/PointData.h"
+
+namespace adaptiso {
+namespace {
+
+using testing::decoded;
+using testing::exampleName;
+using testing::icosphere;
+using testing::messageOf;
+using testing::written;
+
+constexpr std::size_t kTriangles = 320;  // of the ball
+
+TriangleMesh ball() {
+    return icosphere(2, {1, 2, 3}, 40);
+}
+
+std::vector<std::string> codesOf(const MeshFile& file) {
+    std::vector<std::string> codes;
+    for (const Warning& warning : file.warnings) codes.push_back(warning.code);
+    return codes;
+}
+
+using Codes = std::vector<std::string>;
+
+/// `bytes` with another number in place of a text. \pre it is there once
+std::string replaced(std::string bytes, const std::string& text, const std::string& other) {
+    const std::size_t at = bytes.find(text);
+    EXPECT_NE(at, std::string::npos) << text;
+    return bytes.replace(at, text.size(), other);
+}
+
+std::string fault(const std::string& bytes, const std::string& name) {
+    return messageOf<FileError>([&] { decoded(bytes, name); });
+}
+
+void expectMore(const std::string& bytes, const std::string& name, const std::string& what) {
+    const std::string message = fault(bytes, name);
+    EXPECT_NE(message.find(what), std::string::npos) << name << ": " << message;
+    EXPECT_NE(message.find("are two files joined?"), std::string::npos) << message;
+}
+
+class CountOf : public ::testing::TestWithParam<int> {
+protected:
+    const MeshFormat& format() const { return meshFormats()[GetParam()]; }
+    std::string name() const { return exampleName(format()); }
+    std::string ballBytes() const { return written(ball(), name()); }
+    bool countsRecords() const { return format().id != MeshFormatId::Obj; }
+};
+
+TEST_P(CountOf, JoinedFilesAreRefused) {
+    if (!countsRecords()) GTEST_SKIP() << "OBJ counts nothing";
+    expectMore(ballBytes() + ballBytes(), name(), "another surface");
+    // a small one behind a large one, and the other way round
+    const std::string small = written(testing::tetrahedron(), name());
+    expectMore(ballBytes() + small, name(), "another surface");
+    expectMore(small + ballBytes(), name(), "another surface");
+}
+
+TEST_P(CountOf, OfAWholeFileGivesNoWarning) {
+    EXPECT_EQ(codesOf(decoded(ballBytes(), name())), Codes{});
+}
+
+TEST_P(CountOf, ZerosBehindTheEndAreAWarning) {
+    if (!countsRecords()) GTEST_SKIP() << "OBJ counts nothing";
+    const MeshFile file = decoded(ballBytes() + std::string(100, '\0'), name());
+    EXPECT_EQ(file.mesh.triangles.size(), kTriangles);
+    EXPECT_EQ(codesOf(file), Codes{"trailing-bytes"});
+}
+
+TEST_P(CountOf, AFewBytesBehindTheEndAreAWarning) {
+    if (!countsRecords()) GTEST_SKIP() << "OBJ counts nothing";
+    const MeshFile file = decoded(ballBytes() + "#end", name());
+    EXPECT_EQ(file.mesh.triangles.size(), kTriangles);
+    const bool isComment = format().id == MeshFormatId::Off;
+    EXPECT_EQ(codesOf(file), isComment ? Codes{} : Codes{"trailing-bytes"});
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryFormat, CountOf,
+                         ::testing::Range(0, static_cast<int>(meshFormats().size())),
+                         [](const auto& info) {
+                             std::string name(meshFormats()[info.param].extensions.front());
+                             return name.substr(1);
+                         });
+
+TEST(Counts, FewerThanAreThereAreRefused) {
+    std::string stl = written(ball(), "a.stl");
+    const std::uint32_t half = 160;
+    std::memcpy(stl.data() + 80, &half, sizeof half);
+    expectMore(stl, "a.stl", "it holds 160 more behind the 160 triangles that it counts");
+    expectMore(replaced(written(ball(), "a.ply"), "face 320", "face 319"), "a.ply",
+               "1 more behind the 319 faces");
+    expectMore(replaced(written(ball(), "a.off"), "162 320 0", "162 315 0"), "a.off",
+               "5 more behind the 315 faces");
+    expectMore(replaced(written(ball(), "a.tri"), "- 320 320 320", "- 319 319 319"), "a.tri",
+               "1 more behind the 319 triangles");
+    TriangleMesh bare = ball();
+    bare.normals.clear();
+    const std::string counts = "POLYGONS 320 1280", fewer = "POLYGONS 310 1240";
+    expectMore(replaced(written(bare, "a.vtk"), counts, fewer), "a.vtk",
+               "10 more behind the 310 polygons");
+    // with normals behind the polygons they are no whole records
+    EXPECT_NE(fault(replaced(written(ball(), "a.vtk"), counts, fewer), "a.vtk").find("no section"),
+              std::string::npos);
+}
+
+TEST(Counts, FewerTrianglesOfFreeSurferAreRefused) {
+    const std::string bytes = written(ball(), "a.pial");
+    // the number of triangles stands behind that of the points, in front of these
+    const std::size_t at = bytes.find("\n\n") + 2 + sizeof(std::int32_t);
+    const std::size_t end = at + 4 + 162 * 12 + 320 * 12;
+    for (const int fewer : {1, 20, 60}) {
+        std::string file = bytes;
+        file[at + 3] = static_cast<char>(file[at + 3] - fewer);
+        const std::string more = std::to_string(fewer) + " more behind the ";
+        expectMore(file, "a.pial", more);
+        expectMore(file.substr(0, end), "a.pial", more);  // without its footer
+    }
+}
+
+TEST(Counts, OfTextAreHeldAgainstTheRest) {
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
+        "0\n0 1 0\n3 0 1 2\n";
+    EXPECT_EQ(codesOf(decoded(ply + "\n \n", "a.ply")), Codes{});
+    expectMore(ply + "3 0 2 1\n", "a.ply", "1 more behind the 1 faces");
+    const std::string vtk =
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 "
+        "0\nPOLYGONS 1 4\n3 0 1 2\n";
+    EXPECT_EQ(codesOf(decoded(vtk, "a.vtk")), Codes{});
+    expectMore(vtk + "3 0 2 1\n", "a.vtk", "1 more behind the 1 polygons");
+    EXPECT_EQ(codesOf(decoded(
+                  vtk + "POINT_DATA 3\nTENSORS t float\n" +
+                      [] {
+                          std::string numbers;
+                          for (int n = 0; n < 27; ++n) numbers += "1 ";
+                          return numbers;
+                      }(),
+                  "a.vtk")),
+              Codes{});
+    EXPECT_EQ(codesOf(decoded(vtk + "SOMETHING new\n1 2 3\n", "a.vtk")), Codes{"trailing-bytes"});
+    const std::string tri = "3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1\n1 1 2 3\n";  // FreeSurfer's
+    EXPECT_EQ(codesOf(decoded(tri, "a.tri")), Codes{});
+    expectMore(tri + "2 1 3 2\n", "a.tri", "1 more behind the 1 triangles");
+    // the numbers of cells contradict each other
+    EXPECT_NE(fault(replaced(vtk, "POLYGONS 1 4", "POLYGONS 2 4"), "a.vtk")
+                  .find("it counts 2 polygons, and its list has 1"),
+              std::string::npos);
+}
+
+TEST(Counts, UnsetByAStreamWriterAreSetToWhatIsThere) {
+    for (const std::uint32_t count : {0U, 0xFFFFFFFFU}) {
+        std::string stl = written(ball(), "a.stl");
+        std::memcpy(stl.data() + 80, &count, sizeof count);
+        const MeshFile file = decoded(stl, "a.stl");
+        EXPECT_EQ(file.mesh.triangles.size(), kTriangles);
+        EXPECT_EQ(file.mesh.points.size(), ball().points.size());
+        EXPECT_EQ(codesOf(file), Codes{"count-unset"});
+        // a part of a record behind them
+        EXPECT_EQ(codesOf(decoded(stl + "abc", "a.stl")), (Codes{"count-unset", "trailing-bytes"}));
+    }
+    for (const std::string count : {"0", "-1", "4294967295"}) {
+        const std::string ply = replaced(written(ball(), "a.ply"), "face 320", "face " + count);
+        EXPECT_EQ(decoded(ply, "a.ply").mesh.triangles.size(), kTriangles) << count;
+        const std::string off =
+            replaced(written(ball(), "a.off"), "162 320 0", "162 " + count + " 0");
+        EXPECT_EQ(decoded(off, "a.off").mesh.triangles.size(), kTriangles) << count;
+    }
+}
+
+TEST(Counts, MoreThanAreThereAreRefused) {
+    std::string stl = written(ball(), "a.stl");
+    const std::uint32_t more = 321;
+    std::memcpy(stl.data() + 80, &more, sizeof more);
+    EXPECT_NE(fault(stl, "a.stl").find("321 triangles, but only 16000 bytes"), std::string::npos);
+}
+
+TEST(Counts, SolidsOfOneTextAreAllRead) {
+    const auto solid = [](const std::string& name, double z) {
+        const std::string height = std::to_string(z);
+        return "solid " + name + "\nfacet normal 0 0 1\nouter loop\nvertex 0 0 " + height +
+               "\nvertex 1 0 " + height + "\nvertex 0 1 " + height +
+               "\nendloop\nendfacet\nendsolid " + name + "\n";
+    };
+    const MeshFile file = decoded(solid("a", 0) + "\n" + solid("b", 1), "a.stl");
+    EXPECT_EQ(file.mesh.triangles.size(), 2U);
+    EXPECT_EQ(file.mesh.points.size(), 6U);
+    EXPECT_EQ(codesOf(file), Codes{"several-solids"});
+    EXPECT_EQ(codesOf(decoded(solid("a", 0), "a.stl")), Codes{});
+    std::string solids;
+    for (int n = 0; n < 20; ++n) solids += solid("a", n);
+    expectMore(solids + written(ball(), "b.stl"), "a.stl", "another surface");
+}
+
+TEST(Counts, AttributesOfStlAreNamedOrPassedOver) {
+    const std::string stl = written(ball(), "a.stl");
+    std::string colored = stl;
+    for (std::size_t n = 0; n < 320; ++n) {
+        const std::uint16_t red = 0xFC00;  // SolidView: bit 15 and red
+        std::memcpy(colored.data() + 84 + 50 * n + 48, &red, sizeof red);
+    }
+    const MeshFile file = decoded(colored, "a.stl");
+    EXPECT_EQ(file.mesh.triangles, decoded(stl, "a.stl").mesh.triangles);
+    EXPECT_EQ(codesOf(file), Codes{"attributes-left-out"});
+    // as the format defines it: so many bytes behind the triangle
+    std::string longer = stl.substr(0, 84);
+    for (std::size_t n = 0; n < 320; ++n) {
+        const std::uint16_t bytes = n % 2 == 0 ? 7 : 0;
+        std::string record = stl.substr(84 + 50 * n, 50);
+        std::memcpy(record.data() + 48, &bytes, sizeof bytes);
+        longer += record + std::string(bytes, 'x');
+    }
+    const MeshFile followed = decoded(longer, "a.stl");
+    EXPECT_EQ(followed.mesh.points, decoded(stl, "a.stl").mesh.points);
+    EXPECT_EQ(codesOf(followed), Codes{"attributes-left-out"});
+}
+
+TEST(Counts, OfValuesAtPointsAreHeldAgainstTheRest) {
+    const std::vector<float> numbers{1, 2, 3, 4};
+    const std::vector<std::int32_t> labels{1, 2, 3, 4};
+    const auto bytes = [](const PointData& data, const char* name) {
+        const auto file = testing::temporaryFile(name);
+        writePointData(data, 4, file);
+        return testing::bytesOf(file);
+    };
+    const auto codes = [](const std::string& content, PointDataFormat format) {
+        std::vector<std::string> found;
+        for (const Warning& warning : decodePointData(content, format, "x").warnings) {
+            found.push_back(warning.code);
+        }
+        return found;
+    };
+    const std::vector<std::pair<PointData, const char*>> files{
+        {{PointDataFormat::FreeSurferCurv, 4, {{{}, numbers, 1, {}}}, {}, {}, {}}, "lh.curv"},
+        {{PointDataFormat::FreeSurferAnnot, 4, {{{}, labels, 1, {}}}, {}, {}, {}}, "lh.annot"},
+        {{PointDataFormat::FreeSurferMgh, 4, {{{}, numbers, 1, {}}}, {}, {}, {}}, "lh.mgh"},
+        {{PointDataFormat::Gifti, 4, {{{}, numbers, 1, {}}}, {}, {}, {}}, "lh.gii"}};
+    for (const auto& [data, name] : files) {
+        const std::string content = bytes(data, name);
+        EXPECT_EQ(codes(content, data.format), Codes{}) << name;
+        EXPECT_EQ(codes(content + std::string(9, '\0'), data.format), Codes{"trailing-bytes"})
+            << name;
+        const std::string more = content + std::string(8, '\1') + content;
+        EXPECT_THROW(decodePointData(more, data.format, name), FileError) << name;
+    }
+}
+
+/// A packed block of zeros, named by many arrays.
+std::string manyArrays(int arrays, std::size_t points) {
+    std::string zeros(points * sizeof(double), '\0');
+    std::string packed(compressBound(zeros.size()), '\0');
+    uLongf length = packed.size();
+    compress2(reinterpret_cast<Bytef*>(packed.data()), &length,
+              reinterpret_cast<const Bytef*>(zeros.data()), zeros.size(), 9);
+    packed.resize(length);
+    std::string block;
+    for (const std::uint64_t word : {std::uint64_t{1}, std::uint64_t{zeros.size()},
+                                     std::uint64_t{0}, std::uint64_t{packed.size()}}) {
+        appendLittleEndian(word, block);
+    }
+    std::string text =
+        "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+        "compressor=\"vtkZLibDataCompressor\"><PolyData><Piece NumberOfPoints=\"" +
+        std::to_string(points) + "\" NumberOfPolys=\"1\"><PointData>";
+    for (int n = 0; n < arrays; ++n) {
+        text += "<DataArray type=\"Float64\" Name=\"a\" format=\"appended\" offset=\"0\"/>";
+    }
+    text +=
+        "</PointData><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+        "format=\"ascii\">";
+    for (std::size_t n = 0; n < points; ++n) text += "0 1 2 ";
+    return text +
+           "</DataArray></Points><Polys><DataArray type=\"Int64\" Name=\"connectivity\" "
+           "format=\"ascii\">0 1 2</DataArray><DataArray type=\"Int64\" Name=\"offsets\" "
+           "format=\"ascii\">3</DataArray></Polys></Piece></PolyData><AppendedData "
+           "encoding=\"raw\">_" +
+           block + packed + "</AppendedData></VTKFile>";
+}
+
+TEST(Counts, ArraysThatNameOneBlockAreCountedTogether) {
+    const auto read = [](int arrays) {
+        const std::string bytes = manyArrays(arrays, 2000);
+        return decodeMesh(bytes, findMeshFormat("a.vtp"), "a.vtp", {.keepsPointArrays = true});
+    };
+    EXPECT_EQ(read(100).pointArrays.size(), 100U);
+    const std::string message = messageOf<FileError>([&] { read(5000); });
+    EXPECT_NE(message.find("decompression bomb"), std::string::npos) << message;
+}
+
+TEST(Counts, EqualNamesTakeNoLongerThanOthers) {
+    // by ever more '_' they take some 10^11 steps
+    constexpr int kArrays = 5000;
+    MeshWriteOptions options;
+    for (int n = 0; n < kArrays; ++n) {
+        options.pointArrays.push_back({"x", std::vector<double>(4)});
+    }
+    const std::string bytes = written(testing::tetrahedron(), "a.ply", options);
+    EXPECT_NE(bytes.find("double x_\n"), std::string::npos);
+    EXPECT_NE(bytes.find("double x_1\n"), std::string::npos);
+    EXPECT_EQ(decodeMesh(bytes, findMeshFormat("a.ply"), "a.ply", {.keepsPointArrays = true})
+                  .pointArrays.size(),
+              std::size_t{kArrays});
+}
+
+}  // namespace
+}  // namespace adaptiso
