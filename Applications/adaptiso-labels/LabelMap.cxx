@@ -32,25 +32,30 @@ bool isLabel(T value) {
 }
 
 template <class T>
-std::string faultText(const TypedVolumeView<T>& view, const Index3& at) {
+std::string faultText(const TypedVolumeView<T>& view, const Index3& at,
+                      const std::string& scaling) {
     const T value = view.at(at[0], at[1], at[2]);
     std::string text = "voxel (" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " +
                        std::to_string(at[2]) + ") holds ";
     const auto number = static_cast<double>(value);
     const bool isWhole = std::isfinite(number) && number == std::floor(number);
     text += isWhole ? formatNumber(number) : formatApart({number, std::round(number)}).front();
-    return text + (isWhole ? ", beyond the labels that are read, -2147483647 to 2147483647"
-                           : ", which is no whole number, so this is no label map");
+    text += isWhole ? ", beyond the labels that are read, -2147483647 to 2147483647"
+                    : ", which is no whole number, so this is no label map";
+    if (scaling.empty()) return text;
+    return text + "; its header scales the stored values (" + scaling +
+           "): save a label map as integers, without scaling";
 }
 
 /// The census of one layer.
 template <class T>
-void countLayer(const TypedVolumeView<T>& view, int64_t k, Counts& counts) {
+void countLayer(const TypedVolumeView<T>& view, int64_t k, const std::string& scaling,
+                Counts& counts) {
     const Index3& size = view.geometry.size;
     for (int64_t j = 0; j < size[1]; ++j) {
         for (int64_t i = 0; i < size[0];) {
             const T value = view.at(i, j, k);
-            if (!isLabel(value)) throw InvalidInput(faultText(view, {i, j, k}));
+            if (!isLabel(value)) throw InvalidInput(faultText(view, {i, j, k}, scaling));
             const int64_t begin = i;
             while (i < size[0] && view.at(i, j, k) == value) ++i;
             if (value == T(0)) continue;
@@ -69,11 +74,11 @@ bool LabelCensus::looksLikeAnImage() const {
     return voxels.size() > kFew && medianRun < kShort;
 }
 
-LabelCensus countLabels(const VolumeView& image) {
+LabelCensus countLabels(const VolumeView& image, const std::string& scaling) {
     Counts all;
     dispatchPixelType(image, [&](const auto& view) {
         const int64_t layers = view.geometry.size[2];
-        for (int64_t k = 0; k < layers; ++k) countLayer(view, k, all);
+        for (int64_t k = 0; k < layers; ++k) countLayer(view, k, scaling, all);
     });
     LabelCensus census;
     std::vector<double> runs;

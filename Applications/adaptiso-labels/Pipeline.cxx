@@ -96,7 +96,7 @@ Volume readMap(LabelsOptions& options, LabelsRun& run, LabelCensus& census) {
     const VolumeView& view = read.volume.view();
     run.map = {read.format, view.geometry(), view.pixelType(), valueRange(view), read.warnings, 0};
     addWarnings(run.warnings, read.warnings, name);
-    census = naming(name, [&] { return countLabels(view); });
+    census = naming(name, [&] { return countLabels(view, read.scaling); });
     run.map.labels = std::ssize(census.voxels);
     if (census.voxels.empty()) {
         throw InvalidInput(name + ": holds no label: all voxels are 0");

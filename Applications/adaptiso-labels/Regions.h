@@ -26,9 +26,10 @@ struct LabelCensus {
 };
 
 /// Counts the labels of an image.
+/// \param scaling  of the header (ReadVolume), for the message
 /// \throws InvalidInput  "voxel (91, 4, 20) holds 0.37, ...": a value that is no whole number, or
 ///                       that 32 bits don't hold
-LabelCensus countLabels(const VolumeView& image);
+LabelCensus countLabels(const VolumeView& image, const std::string& scaling);
 
 /// The map with merged labels as one; the same volume when no labels are merged.
 Volume mergeLabels(Volume map, const std::vector<LabelMerge>& merges);

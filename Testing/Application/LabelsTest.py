@@ -3,6 +3,7 @@
 import json
 import math
 import random
+import struct
 
 from labelsSupport import LabelsTest, label_map, three_boxes
 from support import (BAD_INPUT, CHECK_FAILED, OK, USAGE, Image, write_4d_nifti, write_metaimage,
@@ -319,6 +320,11 @@ class RefusalTest(LabelsTest):
         write_nifti(self.path("near.nii"), image)
         self.refused(BAD_INPUT, r"near.nii: voxel \(0, 0, 0\) holds 3.0000005, which is no whole number",
                      "near.nii", "-o", "out")
+        scaled = bytearray(self.path("real.nii").read_bytes())
+        scaled[112:120] = struct.pack("<ff", 0.03125, 0)  # scl_slope, scl_inter
+        self.path("scaled.nii").write_bytes(scaled)
+        self.refused(BAD_INPUT, r"which is no whole number.*scl_slope 0.03125, scl_inter 0.*save a label map as integers",
+                     "scaled.nii", "-o", "out")
         image.samples[0] = float("nan")
         write_nifti(self.path("nan.nii"), image)
         self.refused(BAD_INPUT, r"nan.nii: voxel \(0, 0, 0\) holds not a number", "nan.nii", "-o",

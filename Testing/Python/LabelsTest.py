@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import struct
 import unittest
 
 import adaptiso
@@ -153,6 +154,22 @@ class Refused(InFolder):
                 call()
             self.assertNotIn("\n", str(caught.exception))
         self.assertEqual(list(self.folder.iterdir()), [])
+
+
+    @needs("nibabel")
+    def test_scaling_is_named_as_the_cause(self):
+        """As of labels that were saved as floats scaled to int16."""
+        import nibabel
+        path = self.folder / "scaled.nii"
+        nibabel.save(nibabel.Nifti1Image(boxes(), np.eye(4)), path)
+        stored = bytearray(path.read_bytes())
+        stored[112:120] = struct.pack("<ff", 0.03125, 0)
+        path.write_bytes(stored)
+        for given, cause in ((path, "scl_slope 0.03125, scl_inter 0"),
+                             (nibabel.load(path), "slope 0.03125, intercept 0"),
+                             (adaptiso.read(path), "scl_slope")):
+            with self.assertRaisesRegex(adaptiso.Error, cause):
+                adaptiso.labels(given)
 
 
 @needs("nibabel")

@@ -93,6 +93,18 @@ bool needsGdcm(const std::vector<DicomFile>& files, const DicomStack& stack) {
     });
 }
 
+/// Of the first slice that is scaled.
+std::string scalingOf(const DicomStack& stack) {
+    for (const DicomPlane& plane : stack.planes) {
+        SampleLayout layout;
+        layout.slope = plane.slope;
+        layout.intercept = plane.intercept;
+        layout.isScaled = plane.slope != 1 || plane.intercept != 0;
+        if (layout.isScaled) return layout.scalingText("RescaleSlope", "RescaleIntercept");
+    }
+    return {};
+}
+
 ReadVolume readImages(const fs::path& input, DicomInput images, const ReadOptions& options) {
     std::vector<Warning> warnings = std::move(images.warnings);
     const std::vector<DicomGroup> groups = groupDicomPlanes(images.files);
@@ -103,7 +115,7 @@ ReadVolume readImages(const fs::path& input, DicomInput images, const ReadOption
     const auto decode = [&] {
         std::vector<Warning> all = warnings;
         Volume volume = decodeDicomStack(input, images.files, stack, all);
-        return ReadVolume{std::move(volume), "DICOM", std::move(all)};
+        return ReadVolume{std::move(volume), "DICOM", std::move(all), scalingOf(stack)};
     };
     const bool isSandboxed = options.sandbox && needsGdcm(images.files, stack);
     return isSandboxed ? readInSandbox(input, sandboxLimitsFor(input), decode) : decode();

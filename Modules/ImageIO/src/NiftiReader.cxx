@@ -536,7 +536,7 @@ ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
     PlacedVolume read = readPlaced(place, layout, geometry);
     checkTail(place, read.tail, layout, extents.size, warnings);
     return {std::move(read.volume), header.version == 1 ? "NIfTI-1" : "NIfTI-2",
-            std::move(warnings)};
+            std::move(warnings), layout.scalingText("scl_slope", "scl_inter")};
 }
 
 }  // namespace adaptiso::detail

@@ -74,6 +74,11 @@ std::int64_t readInto(std::byte* samples, PixelType type, ByteSource& source,
 
 }  // namespace
 
+std::string SampleLayout::scalingText(const char* slopeName, const char* interceptName) const {
+    if (!isScaled) return {};
+    return fmt::format("{} {}, {} {}", slopeName, number(slope), interceptName, number(intercept));
+}
+
 std::uint64_t requireProduct(const std::filesystem::path& file, std::uint64_t a, std::uint64_t b) {
     if (a > 0 && b > kLargestFile / a) {
         refuse(file,

@@ -66,6 +66,9 @@ struct SampleLayout {
     std::int64_t volumeCount = 1;  ///< of one size, one after the other
     std::int64_t volumeIndex = 0;  ///< the one to read
     bool isInterleaved = false;    ///< or all volumes' samples of a voxel side by side
+
+    /// "scl_slope 0.5, scl_inter 0"; empty where nothing is scaled.
+    std::string scalingText(const char* slopeName, const char* interceptName) const;
 };
 
 /// The volume to read of a file that holds `volumeCount`.

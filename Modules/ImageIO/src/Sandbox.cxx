@@ -171,7 +171,7 @@ ReadVolume volumeOf(const fs::path& input, int memory, SandboxAnswer answer) {
     }
     requireUsableGeometry(input, answer.geometry);
     return {Volume(VolumeView(samples.get(), answer.pixelType, answer.geometry), samples),
-            std::move(answer.format), std::move(answer.warnings)};
+            std::move(answer.format), std::move(answer.warnings), std::move(answer.scaling)};
 }
 
 /// The child ended without an answer.

@@ -79,6 +79,7 @@ struct SandboxAnswer {
     std::uint64_t offset = 0, byteCount = 0;  ///< of the samples in the shared memory
     std::string format;
     std::vector<Warning> warnings;
+    std::string scaling{};
 };
 
 /// Longer answers are refused.

@@ -42,7 +42,7 @@ std::optional<std::string> takeText(std::string_view& bytes) {
 }  // namespace
 
 std::string packSandboxAnswer(const SandboxAnswer& answer) {
-    std::vector<std::string_view> texts{answer.message, answer.format};
+    std::vector<std::string_view> texts{answer.message, answer.format, answer.scaling};
     for (const Warning& warning : answer.warnings) {
         texts.insert(texts.end(), {warning.code, warning.text});
     }
@@ -73,8 +73,8 @@ std::optional<SandboxAnswer> parseSandboxAnswer(std::string_view bytes) {
     std::memcpy(&fixed, bytes.data(), sizeof fixed);
     if (fixed.magic != kMagic || fixed.wholeBytes != bytes.size() ||
         fixed.kind > static_cast<std::uint32_t>(SandboxAnswer::Kind::UnknownError) ||
-        fixed.pixelType > static_cast<std::uint32_t>(PixelType::Float64) || fixed.textCount < 2 ||
-        fixed.textCount % 2 != 0) {
+        fixed.pixelType > static_cast<std::uint32_t>(PixelType::Float64) || fixed.textCount < 3 ||
+        fixed.textCount % 2 == 0) {
         return std::nullopt;
     }
     SandboxAnswer answer;
@@ -98,7 +98,9 @@ std::optional<SandboxAnswer> parseSandboxAnswer(std::string_view bytes) {
             answer.message = std::move(*text);
         } else if (n == 1) {
             answer.format = std::move(*text);
-        } else if (n % 2 == 0) {
+        } else if (n == 2) {
+            answer.scaling = std::move(*text);
+        } else if (n % 2 == 1) {
             answer.warnings.push_back({std::move(*text), {}});
         } else {
             answer.warnings.back().text = std::move(*text);

@@ -148,6 +148,7 @@ SandboxAnswer answerOf(const std::function<ReadVolume()>& read, std::optional<Re
         answer.byteCount = view.byteCount();
         answer.offset = arena->offsetOf(view.samples(), answer.byteCount);
         answer.format = result->format;
+        answer.scaling = result->scaling;
         answer.warnings = result->warnings;
         answer.kind = SandboxAnswer::Kind::Volume;
     } catch (const Shortage& error) {

@@ -260,7 +260,8 @@ TEST(SandboxAnswer, ParsesOnlyWholeAnswers) {
                              4096,
                              192,
                              "DICOM",
-                             {{"gantry-tilt", "tilted"}, {"stray-bits", "odd"}}};
+                             {{"gantry-tilt", "tilted"}, {"stray-bits", "odd"}},
+                             "RescaleSlope 2, RescaleIntercept 0"};
     const std::string bytes = packSandboxAnswer(told);
     const auto parsed = detail::parseSandboxAnswer(bytes);
     ASSERT_TRUE(parsed);
@@ -270,6 +271,7 @@ TEST(SandboxAnswer, ParsesOnlyWholeAnswers) {
     EXPECT_EQ(parsed->byteCount, 192U);
     EXPECT_EQ(parsed->format, "DICOM");
     EXPECT_EQ(parsed->warnings, told.warnings);
+    EXPECT_EQ(parsed->scaling, told.scaling);
     for (std::size_t length = 0; length < bytes.size(); ++length) {
         EXPECT_FALSE(detail::parseSandboxAnswer(std::string_view(bytes).substr(0, length)));
     }

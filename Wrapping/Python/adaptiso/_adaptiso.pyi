@@ -130,7 +130,7 @@ def make_surface(volume: ArrayVolume, index: Optional[ArrayIndex], border: str,
 def read_image(path: str, series: Optional[str], volume_index: Optional[int],
                level: Optional[int], channel: Optional[int], time: Optional[int],
                all_chunks: bool, resample_slices: bool) -> Tuple[npt.NDArray[Any], npt.NDArray[np.float64], str,
-                                               List[Warned]]: ...
+                                               List[Warned], str]: ...
 def read_mesh(path: str, shape: Optional[Sequence[int]],
               affine: Optional[npt.NDArray[np.float64]],
               keeps_faults: bool,

@@ -116,6 +116,13 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     >>> image.affine.diagonal()
     array([1., 1., 1., 1.])
     """
+    return _read(file, series, volume_index, level, channel, time, all_chunks, resample_slices)[0]
+
+
+def _read(file: Any, series: Optional[str] = None, volume_index: Optional[int] = None,
+          level: Optional[int] = None, channel: Optional[int] = None, time: Optional[int] = None,
+          all_chunks: bool = False, resample_slices: bool = False) -> Tuple[Image, str]:
+    """`read`, and how the header scales stored values ("": it does not)."""
     name = path("file", file)
     if series is not None and not isinstance(series, (str, int)):
         raise Error(f"series {shown(series)}: must be a number or a SeriesInstanceUID")
@@ -125,19 +132,19 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     is_of_zarr = whole or any(numbers[key] is not None for key in ("level", "channel", "time"))
     if not hasattr(_adaptiso, "read_image"):
         return _read_by_nibabel(name, numbers["volume_index"],
-                                series is not None or resample or is_of_zarr)
+                                series is not None or resample or is_of_zarr), ""
     if is_of_zarr and not os.path.isdir(name):
         raise Error(f"{name}: is no Zarr or N5, which level, channel, time and all_chunks are for")
     try:
         with _reading:
-            array, affine, kind, warnings = _adaptiso.read_image(
+            array, affine, kind, warnings, scaling = _adaptiso.read_image(
                 name, None if series is None else str(series), **numbers, all_chunks=whole,
                 resample_slices=resample)
     except Error as error:
         raise Error(_in_python(str(error))) from None
     for warning in warnings:
         logger.warning("%s", warning.of(base_name(name)))
-    return Image(array, affine, warnings, kind)
+    return Image(array, affine, warnings, kind), scaling
 
 
 def _in_python(message: str) -> str:
@@ -199,6 +206,7 @@ class Samples(NamedTuple):
     file: str
     format: str
     warnings: List[Warned]
+    scaling: str = ""  #: how a file's header scales its values, where that is known
 
 
 def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
@@ -207,15 +215,19 @@ def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
     if is_path(image):
         if affine is not None:
             raise Error("affine: a file has its own; read it with adaptiso.read and give the array")
-        found = read(image)
+        found, scaling = _read(image)
         return prepared(found.array, found.affine, base_name(path("image", image)), found.format,
-                         found.warnings)
+                        found.warnings)._replace(scaling=scaling)
     array, own_affine, kind = _array_of(image)
+    stored = getattr(image, "dataobj", None)  # of nibabel
+    slope, intercept = getattr(stored, "slope", 1), getattr(stored, "inter", 0)
+    scaling = "" if (slope, intercept) == (1, 0) else f"slope {slope:g}, intercept {intercept:g}"
     if affine is None:
         affine = np.eye(4) if own_affine is None else own_affine
     elif own_affine is not None:
         raise Error("affine: the image has its own; give its array and the affine")
-    return prepared(np.asfortranarray(array) if in_file_order else array, affine, "", kind, [])
+    return prepared(np.asfortranarray(array) if in_file_order else array, affine, "", kind,
+                    [])._replace(scaling=scaling)
 
 
 def affine_of(value: Any) -> Affine:

@@ -15,7 +15,7 @@ from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, aim, count, is_path, listed, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads)
-from ._images import base_name, read_only, samples_of
+from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import IN_VOXELS, Mesh, is_identity
 from ._triangles import Triangles
 
@@ -294,10 +294,23 @@ def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional
     samples = samples_of(image, affine, True)
     subject = samples.file or "image"
     with read_only(samples.user):
-        data = _adaptiso.make_labels(samples.volume, subject=subject, **options)
+        try:
+            data = _adaptiso.make_labels(samples.volume, subject=subject, **options)
+        except Error as error:
+            if "whole numbers" not in str(error):
+                raise
+            raise Error(f"{error}; {_advice_on(samples)}") from None
     if len(data.faces) == 0:
         raise Error(f"{subject}: holds no label: all voxels are 0")
     return LabelSurfaces(data, table)
+
+
+def _advice_on(samples: Samples) -> str:
+    """What may have made labels of an image others than whole numbers."""
+    if samples.scaling:
+        return (f"its header scales the stored values ({samples.scaling}): save a label map as "
+                "integers, without scaling")
+    return "save a label map as integers, without scaling (scl_slope)"
 
 
 def _chosen(labels: Any, names: _Names) -> List[int]:

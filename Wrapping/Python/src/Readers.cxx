@@ -18,7 +18,7 @@ py::tuple readImage(const std::string& path, const ReadOptions& options) {
     std::optional<ReadVolume> read;
     runUnlocked(0, [&] { read = readVolume(path, options); });
     return py::make_tuple(toArray(read->volume), affineOf(read->volume.view().geometry()),
-                          read->format, read->warnings);
+                          read->format, read->warnings, read->scaling);
 }
 
 }  // namespace

@@ -47,6 +47,8 @@ struct ReadVolume {
     std::string format;  ///< "NIfTI-1", "NIfTI-2", "NRRD", "MetaImage", "MGH", "DICOM", "Zarr 3",
                          ///< "OME-Zarr 0.4"
     std::vector<Warning> warnings;  ///< one line each, without the file's name
+    /// How the header scales the stored values: "scl_slope 0.5, scl_inter 0". Empty: it does not.
+    std::string scaling{};
 };
 
 /// Reads one scalar 3-D image: NIfTI (.nii, .nii.gz, .hdr/.img; versions 1 and 2), NRRD (.nrrd,
