@@ -109,6 +109,7 @@ void addNrrdSeeds(Seeds& seeds) {
     std::string numbers;
     for (int n = 0; n < 24; ++n) numbers += std::to_string(n) + (n % 4 == 3 ? "\n" : " ");
     seeds.add("nrrd", file("encoding: ascii\nspacings: 1 2 3\n", numbers));
+    seeds.add("nrrd", file("encoding: ascii\nspacings: 1 2 3\nunits: \"um\" \"mm\" cm\n", numbers));
     seeds.add("nrrd", file("encoding: text\nspacings: 1 2 3\n", numbers + "1.5e1, -7 nan 99999\n"));
     seeds.add("nrrd",
               "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: txt\n\n"
@@ -147,6 +148,8 @@ void addMetaImageSeeds(Seeds& seeds) {
                             "LOCAL\n" + shortSamples() + shortSamples()));
     seeds.add("mha", header("CompressedData = True\n", "LOCAL\n" + packed + packed));
     seeds.add("mha", header("HeaderSize = -1\nDistanceUnits = mm\n", "x.raw\n"));
+    seeds.add("mha", header("Kinds = domain domain list\n", "a b%03d 100%.raw 1 2\n"));
+    seeds.add("mha", header("Seq_Frame0000_ImageStatus = OK\n", "LIST 2\nx.raw\n"));
     seeds.add("mha", header("HeaderSize = 4\nElementNumberOfChannels = 1\n", "x.raw\n"));
     seeds.add(
         "mha",

@@ -11,6 +11,7 @@
 #include "Readers.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/Surplus.h"
 #include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso::detail {
@@ -196,7 +197,7 @@ ImageExtent ImageExtent::of(const SampleLayout& layout, const Index3& size) {
 }
 
 bool isMoreImage(std::uint64_t extraBytes, const ImageExtent& extent) {
-    return extraBytes > 0 && (extraBytes % extent.piece == 0 || extraBytes >= extent.whole / 2);
+    return isMoreData(extraBytes, extent.piece, extent.whole);
 }
 
 ByteSource openData(const DataPlace& place, std::uint64_t byteCount, const ImageExtent& extent) {
@@ -318,6 +319,22 @@ void checkTail(const DataPlace& place, const ByteTail& tail, const SampleLayout&
                                  : "")});
 }
 
+namespace {
+
+/// MetaIO's and NRRD's other forms: "LIST 2", "slice%03d.raw 1 20 1".
+bool isListOrPattern(std::string_view name) {
+    if (name == "LIST" || name.starts_with("LIST ") || name.starts_with("LIST\t")) return true;
+    for (std::size_t at = name.find('%'); at != name.npos; at = name.find('%', at + 1)) {
+        const std::size_t letter = name.find_first_not_of("0123456789.+-#", at + 1);
+        if (letter != name.npos && std::string_view("diuxX").find(name[letter]) != name.npos) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
 fs::path requireDataFile(const fs::path& headerFile, std::string_view name) {
     const fs::path relative(name);
     if (!name.empty() && !staysBelow(relative)) {
@@ -325,14 +342,17 @@ fs::path requireDataFile(const fs::path& headerFile, std::string_view name) {
                fmt::format("names a data file outside its own folder ('{}')", printable(name)),
                "put the data file beside the header and name it there");
     }
-    if (name.empty() || name.find('%') != std::string_view::npos ||
-        name.find('\0') != std::string_view::npos) {
+    if (name.empty() || name.find('\0') != std::string_view::npos) {
         refuse(headerFile, fmt::format("its data file '{}' is no plain file name", printable(name)),
-               "join the slices into one data file");
+               "repair the header");
     }
     fs::path data = headerFile.parent_path() / relative;
-    requireRegularFile(data);
     std::error_code error;
+    if (isListOrPattern(name) && !fs::exists(data, error)) {
+        refuse(headerFile, "its data are a list or pattern of slice files",
+               "join the slices into one data file");
+    }
+    requireRegularFile(data);
     if (fs::equivalent(data, headerFile, error)) {
         refuse(headerFile, "names itself as its data file", "repair the header");
     }

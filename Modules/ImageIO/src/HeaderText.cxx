@@ -37,6 +37,10 @@ std::vector<std::string_view> words(std::string_view text) {
     return found;
 }
 
+bool isSpatialKind(std::string_view kind) {
+    return kind == "domain" || kind == "space" || kind == "???" || kind == "none";
+}
+
 std::optional<double> parseNumber(std::string_view text) {
     return parseReal(trimmed(text));
 }

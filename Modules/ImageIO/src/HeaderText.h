@@ -20,6 +20,9 @@ namespace adaptiso::detail {
 /// Cut at blanks.
 std::vector<std::string_view> words(std::string_view text);
 
+/// Whether an axis of this kind, in lower case, is or may be a direction in space.
+bool isSpatialKind(std::string_view kind);
+
 /// All of `text` as one number; nothing else, no NaN or infinity for integers.
 std::optional<double> parseNumber(std::string_view text);
 std::optional<std::int64_t> parseInteger(std::string_view text);

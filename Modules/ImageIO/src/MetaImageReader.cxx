@@ -221,6 +221,24 @@ void requireScalar(const fs::path& file, const MetaHeader& header) {
     }
 }
 
+/// Plus and 3D Slicer write tracked 2-D images one behind the other, a place in space for each.
+void requireNoSequence(const fs::path& file, const MetaHeader& header) {
+    const auto refused = [&](std::string_view what) {
+        refuse(file,
+               fmt::format("{}, not a direction in space (components or a list of images)", what),
+               "extract one scalar volume first");
+    };
+    const auto kinds = words(header.find({"Kinds"}).value_or(""));
+    for (std::size_t axis = 0; axis < kinds.size() && axis < 3; ++axis) {
+        if (isSpatialKind(lowerCase(kinds[axis]))) continue;
+        refused(fmt::format("an axis is a '{}'", printable(kinds[axis])));
+    }
+    const auto frame = header.fields.lower_bound("Seq_Frame");
+    if (kinds.empty() && frame != header.fields.end() && frame->first.starts_with("Seq_Frame")) {
+        refused("an axis is a sequence of frames (Seq_Frame...)");
+    }
+}
+
 /// Row a of TransformMatrix is the direction of axis a; LPS mm, as ITK writes it.
 ImageGeometry geometryOf(const fs::path& file, const MetaHeader& header, const Extents& extents,
                          std::vector<Warning>& warnings) {
@@ -293,10 +311,6 @@ std::endian byteOrderOf(const fs::path& file, const MetaHeader& header, PixelTyp
 DataPlace placeOf(const fs::path& file, const MetaHeader& header) {
     const std::string_view name = header.require(file, "ElementDataFile");
     const bool isLocal = lowerCase(name) == "local";
-    if (name.starts_with("LIST") || words(name).size() > 1) {
-        refuse(file, "its data are a list or pattern of slice files",
-               "join the slices into one data file");
-    }
     if (!parseFlag(file, header, {"BinaryData"})) {
         refuse(file, "its data are text (BinaryData is not True)", "save it as binary");
     }
@@ -341,6 +355,7 @@ ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
     requireImage(file, header);
     const Extents extents = parseExtents(file, header);
     requireScalar(file, header);
+    requireNoSequence(file, header);
     const std::string_view type = header.require(file, "ElementType");
     std::vector<Warning> warnings;
     SampleLayout layout{parseType(file, type)};
@@ -357,7 +372,9 @@ ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
     PlacedVolume read = readPlaced(place, layout, geometry);
     requireFourByteLong(file, type, read.tail, byteCount);
     checkTail(place, read.tail, layout, extents.size, warnings);
-    return {std::move(read.volume), "MetaImage", std::move(warnings)};
+    return {
+        std::move(read.volume), "MetaImage", std::move(warnings),
+        layout.scalingText("ElementToIntensityFunctionSlope", "ElementToIntensityFunctionOffset")};
 }
 
 }  // namespace adaptiso::detail

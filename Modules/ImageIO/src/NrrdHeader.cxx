@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -43,23 +44,47 @@ Mat3 spaceToLps(const fs::path& file, std::string_view name) {
            "use left-posterior-superior, right-anterior-superior or left-anterior-superior");
 }
 
-double millimetresPerUnit(const fs::path& file, std::string_view unitsText) {
-    std::string units = lowerCase(unitsText);
-    std::erase(units, '"');
-    double scale = 0;
-    for (const std::string_view unit : words(units)) {
-        const double one = unit == "mm" || unit == "millimeter" || unit == "millimeters" ? 1
-                           : unit == "m" || unit == "meter" || unit == "meters"          ? 1000
-                           : unit == "cm"                                                ? 10
-                           : unit == "um" || unit == "micron" || unit == "microns"       ? 0.001
-                                                                                         : 0;
-        if (one == 0 || (scale != 0 && one != scale)) {
-            refuse(file, fmt::format("unknown or mixed space units {}", printable(unitsText)),
-                   "use mm");
+/// The texts of a list, in quotes or not: "mm" "" mm
+std::vector<std::string> quotedWords(std::string_view text) {
+    std::vector<std::string> found;
+    for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+        const bool isQuoted = text.front() == '"';
+        if (isQuoted) text.remove_prefix(1);
+        const std::size_t end =
+            std::min(text.find_first_of(isQuoted ? "\"" : " \t\""), text.size());
+        found.emplace_back(trimmed(text.substr(0, end)));
+        text.remove_prefix(std::min(end + (isQuoted ? 1 : 0), text.size()));
+    }
+    return found;
+}
+
+/// Empty where the text names no unit. \throws FileError  an unknown one
+std::optional<double> millimetresPerUnit(const fs::path& file, const std::string& text) {
+    const std::string unit = lowerCase(text);
+    if (unit.empty() || unit == "???" || unit == "none") return std::nullopt;
+    if (unit == "mm" || unit == "millimeter" || unit == "millimeters") return 1;
+    if (unit == "m" || unit == "meter" || unit == "meters") return 1000;
+    if (unit == "cm" || unit == "centimeter" || unit == "centimeters") return 10;
+    if (unit == "nm" || unit == "nanometer" || unit == "nanometers") return 1e-6;
+    if (unit == "um" || unit == "micron" || unit == "microns" || unit == "micrometer" ||
+        unit == "micrometers" || unit == "\u00b5m" || unit == "\u03bcm") {
+        return 0.001;
+    }
+    refuse(file, fmt::format("its unit '{}' is not known here", printable(text)), "use mm");
+}
+
+/// Of "space units": one for all axes.
+std::optional<double> spaceUnitMm(const fs::path& file, std::string_view text) {
+    std::optional<double> scale;
+    for (const std::string& unit : quotedWords(text)) {
+        const std::optional<double> one = millimetresPerUnit(file, unit);
+        if (!one) continue;
+        if (scale && *one != *scale) {
+            refuse(file, fmt::format("its space units {} differ", printable(text)), "use mm");
         }
         scale = one;
     }
-    return scale == 0 ? 1 : scale;
+    return scale;
 }
 
 /// "(1,0,0) none (0,1,0) ..."; nothing stands for none.
@@ -93,10 +118,6 @@ std::vector<std::optional<Vec3>> parseVectors(const fs::path& file, std::string_
         text.remove_prefix(close + 1);
     }
     return vectors;
-}
-
-bool isSpatialKind(std::string_view kind) {
-    return kind == "domain" || kind == "space" || kind == "???" || kind == "none";
 }
 
 /// The kinds of axes, lower case; as many as there are axes, "???" where the header does not say.
@@ -139,37 +160,92 @@ std::size_t findVolumeAxis(const fs::path& file, const NrrdHeader& header,
     return candidates[0];
 }
 
-Vec3 parseSpacings(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes) {
-    const auto text = header.find("spacings");
-    if (!text) return {1, 1, 1};
-    const auto spacings = words(*text);
-    if (spacings.size() != axes.count()) {
-        refuseDamaged(file, fmt::format("{} spacings for {} axes", spacings.size(), axes.count()));
+/// What "spacings" and "units" say of an axis in space.
+struct AxisStep {
+    std::optional<double> spacing;  ///< in its unit; none where it is not said
+    std::optional<double> unitMm;
+};
+
+std::array<AxisStep, 3> axisSteps(const fs::path& file, const NrrdHeader& header,
+                                  const NrrdAxes& axes, bool haveDirections) {
+    const auto spacings = words(header.find("spacings").value_or(""));
+    const auto units = quotedWords(header.find("units").value_or(""));
+    for (const auto& [count, name] :
+         {std::pair{spacings.size(), "spacings"}, std::pair{units.size(), "units"}}) {
+        if (count == 0 || count == axes.count()) continue;
+        refuseDamaged(file, fmt::format("{} {} for {} axes", count, name, axes.count()));
     }
-    Vec3 found;
-    for (std::size_t axis = 0, spatial = 0; axis < spacings.size(); ++axis) {
+    std::array<AxisStep, 3> steps;
+    for (std::size_t axis = 0, spatial = 0; axis < axes.count(); ++axis) {
         if (axis == axes.volumeAxis) continue;
-        const auto spacing = parseNumber(spacings[axis]);
-        if (!spacing || !(*spacing > 0)) {
+        AxisStep& step = steps[spatial++];
+        if (!units.empty()) step.unitMm = millimetresPerUnit(file, units[axis]);
+        if (spacings.empty() || (haveDirections && lowerCase(spacings[axis]) == "nan")) continue;
+        step.spacing = parseNumber(spacings[axis]);
+        if (!step.spacing || !(*step.spacing > 0)) {
             refuse(file,
                    fmt::format("voxel spacing '{}' must be a number above zero",
                                printable(spacings[axis])),
                    "repair the header");
         }
-        found[static_cast<int>(spatial++)] = *spacing;
     }
-    return found;
+    return steps;
 }
 
+void warnOfUnit(std::vector<Warning>& warnings) {
+    warnings.push_back({"unit-converted", "its units of length were turned into mm"});
+}
+
+/// Without a space: steps of 1 mm where none is said.
 ImageGeometry spacedGeometry(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes,
                              std::vector<Warning>& warnings) {
-    const Vec3 spacing = parseSpacings(file, header, axes);
+    const std::array<AxisStep, 3> steps = axisSteps(file, header, axes, false);
+    const auto says = [](const AxisStep& step) { return step.spacing.has_value(); };
+    const auto named =
+        std::ranges::count_if(steps, [](const AxisStep& step) { return step.unitMm.has_value(); });
+    if (named > 0 && named < 3) {
+        refuse(file, "some of its axes in space have a unit, others none", "repair the header");
+    }
+    Vec3 spacing;
+    bool isConverted = false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const AxisStep& step = steps[axis];
+        const double unitMm = step.spacing ? step.unitMm.value_or(1) : 1;
+        isConverted = isConverted || unitMm != 1;
+        spacing[static_cast<int>(axis)] = unitMm * step.spacing.value_or(1);
+    }
+    if (isConverted) warnOfUnit(warnings);
+    const bool hasAll = std::ranges::all_of(steps, says);
+    if (!hasAll) {
+        warnings.push_back({"guessed-spacing", "no spacings: a spacing of 1 mm was used"});
+    }
     warnings.push_back({"guessed-orientation",
                         fmt::format("no space field: orientation and position are unknown; {} "
                                     "used along left, posterior, superior",
-                                    header.find("spacings") ? "the spacings alone were"
-                                                            : "a spacing of 1 mm was")});
+                                    hasAll ? "the spacings alone were" : "a spacing of 1 mm was")});
     return {axes.size, {}, Mat3::diagonal(spacing.x, spacing.y, spacing.z)};
+}
+
+/// Spacings or units of axes that have a direction say what that says, or nothing.
+void requireNoOtherSteps(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes,
+                         const ImageGeometry& geometry, double scale) {
+    const std::array<AxisStep, 3> steps = axisSteps(file, header, axes, true);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const AxisStep& step = steps[axis];
+        if (step.unitMm && *step.unitMm != scale) {
+            refuse(file, "its header contradicts itself: units and space units differ",
+                   "remove the wrong one");
+        }
+        constexpr double kSlack = 1e-3;  // of numbers with few digits
+        const double lengthMm = norm(geometry.indexToPhysical.column[axis]);
+        if (step.spacing && !(std::abs(*step.spacing * scale - lengthMm) <= kSlack * lengthMm)) {
+            refuse(file,
+                   fmt::format("its header contradicts itself: the spacing of axis {} is {}, and "
+                               "its space direction is {} long",
+                               axis, number(*step.spacing), number(lengthMm / scale)),
+                   "remove the wrong one");
+        }
+    }
 }
 
 }  // namespace
@@ -337,8 +413,8 @@ ImageGeometry geometryOf(const fs::path& file, const NrrdHeader& header, const N
         return spacedGeometry(file, header, axes, warnings);
     }
     const Mat3 toLps = spaceToLps(file, *space);
-    const double scale = millimetresPerUnit(file, header.find("spaceunits").value_or(""));
-    if (scale != 1) warnings.push_back({"unit-converted", "space units were turned into mm"});
+    const double scale = spaceUnitMm(file, header.find("spaceunits").value_or("")).value_or(1);
+    if (scale != 1) warnOfUnit(warnings);
 
     const auto directions =
         parseVectors(file, "space directions", header.require(file, "spacedirections"));
@@ -354,6 +430,7 @@ ImageGeometry geometryOf(const fs::path& file, const NrrdHeader& header, const N
         }
         geometry.indexToPhysical.column[spatial++] = scale * (toLps * *directions[axis]);
     }
+    requireNoOtherSteps(file, header, axes, geometry, scale);
     const auto text = header.find("spaceorigin");
     if (!text) {
         warnings.push_back(

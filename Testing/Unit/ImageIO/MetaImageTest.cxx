@@ -78,8 +78,7 @@ TEST(MetaImageHeader, RefusesDamage) {
     refused([](MetaFile& f) { f.dataFile = "/etc/passwd"; }, "outside its own folder");
     refused([](MetaFile& f) { f.dataFile = "../x.raw"; }, "outside its own folder");
     refused([](MetaFile& f) { f.dataFile = "x.mha"; }, "itself");
-    refused([](MetaFile& f) { f.dataFile = "LIST"; }, "list");
-    refused([](MetaFile& f) { f.dataFile = "x%n%n.raw"; }, "no plain file name");
+    refused([](MetaFile& f) { f.dataFile = "LIST"; }, "list or pattern");
     refused([](MetaFile& f) { f.dataFile = "x%03d.raw 1 2 1"; }, "list or pattern");
 }
 
@@ -103,6 +102,47 @@ TEST(MetaImageData, ReadsBigEndianAndDetachedData) {
     writeFile(folder / "x.raw", samplesOf(countingSamples<std::int16_t>(24), std::endian::big));
     EXPECT_EQ(samplesIn<std::int16_t>(readVolume(writeFile(folder / "x.mhd", header)).volume),
               countingSamples<std::int16_t>(24));
+}
+
+TEST(MetaImageData, NamesAreTheRestOfTheLine) {
+    const TempFolder folder;
+    for (const std::string name :
+         {"CT Head.raw", "two  blanks.raw", "tab\tin it.raw", "My Scan (2).raw", "100% done.raw",
+          "50%done 1 2 3.raw", "LISTED.raw", "local.raw", "a=b:c.raw", "sub dir/x.raw"}) {
+        const auto data = folder.path() / name;
+        std::filesystem::create_directories(data.parent_path());
+        writeFile(data, kSamples);
+        const auto header = writeFile(folder / "CT Head.mhd", MetaFile{.dataFile = name}.header());
+        EXPECT_EQ(samplesIn<std::int16_t>(readVolume(header).volume),
+                  countingSamples<std::int16_t>(24))
+            << name;
+        const auto nrrd = writeFile(folder / "CT Head.nhdr",
+                                    "NRRD0004\ntype: short\ndimension: 3\nsizes: 4 3 2\nendian: "
+                                    "little\nencoding: raw\nspacings: 1 1 1\ndata file: " +
+                                        name + "\n");
+        EXPECT_EQ(samplesIn<std::int16_t>(readVolume(nrrd).volume),
+                  countingSamples<std::int16_t>(24))
+            << name;
+    }
+}
+
+TEST(MetaImageData, NamesAreNoFormatStrings) {
+    const TempFolder folder;
+    const auto header = writeFile(folder / "x.mhd", MetaFile{.dataFile = "x%n%n.raw"}.header());
+    EXPECT_NE(refusalOf(header).find("x%n%n.raw: no such file"), std::string::npos);
+}
+
+TEST(MetaImageGeometry, AListOfImagesIsRefused) {
+    MetaFile file;
+    file.extra = "Kinds = domain domain domain\n";
+    EXPECT_TRUE(read(file).warnings.empty());
+    for (const char* const kinds :
+         {"domain domain list", "vector domain domain", "domain time ???"}) {
+        file.extra = std::string("Kinds = ") + kinds + "\n";
+        expectRefusedMeta(file, "not a direction in space");
+    }
+    file.extra = "Seq_Frame0000_ImageStatus = OK\n";
+    expectRefusedMeta(file, "sequence of frames");
 }
 
 TEST(MetaImageGeometry, AnOriginBeyondEveryScannerIsRefused) {

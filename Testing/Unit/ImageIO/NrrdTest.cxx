@@ -58,7 +58,54 @@ TEST(NrrdGeometry, UnitsBecomeMillimetres) {
     file.extra = "space units: \"cm\" \"cm\" \"cm\"\n";
     expectNear(read(file).volume.view().geometry().originMm, {100, 200, 300}, 0);
     file.extra = "space units: \"parsec\" \"parsec\" \"parsec\"\n";
-    expectRefusedNrrd(file, "space units");
+    expectRefusedNrrd(file, "unit 'parsec'");
+    file.extra = "space units: \"mm\" \"cm\" \"mm\"\n";
+    expectRefusedNrrd(file, "differ");
+}
+
+std::vector<std::string> codesOf(const ReadVolume& read) {
+    std::vector<std::string> codes;
+    for (const Warning& warning : read.warnings) codes.push_back(warning.code);
+    return codes;
+}
+
+TEST(NrrdGeometry, UnitsOfSpacingsBecomeMillimetres) {
+    NrrdFile file;
+    file.space = file.directions = file.origin = "";
+    const std::string spacings = "spacings: 2 3 4\n";
+    file.extra = spacings + "units: \"microns\" \"um\" \"micrometer\"\n";
+    expectNear(read(file).volume.view().geometry().spacingMm(), {0.002, 0.003, 0.004}, 1e-12);
+    EXPECT_EQ(codesOf(read(file)),
+              (std::vector<std::string>{"unit-converted", "guessed-orientation"}));
+    // each axis has its own
+    file.extra = spacings + "units: \"mm\" \"cm\" \"um\"\n";
+    expectNear(read(file).volume.view().geometry().spacingMm(), {2, 30, 0.004}, 1e-12);
+    file.extra = spacings + "units: \"mm\" \"mm\" \"mm\"\n";
+    EXPECT_EQ(codesOf(read(file)), std::vector<std::string>{"guessed-orientation"});
+    file.extra = spacings + "units: \"\" \" \" \"\"\n";
+    expectNear(read(file).volume.view().geometry().spacingMm(), {2, 3, 4}, 0);
+    file.extra = spacings + "units: \"um\" \"\" \"\"\n";
+    expectRefusedNrrd(file, "some of its axes in space have a unit, others none");
+    file.extra = spacings + "units: \"um\" \"um\"\n";
+    expectRefusedNrrd(file, "2 units for 3 axes");
+    file.extra = spacings + "units: \"um\" \"um\" \"a b\"\n";
+    expectRefusedNrrd(file, "unit 'a b'");
+    file.extra = "";
+    EXPECT_EQ(codesOf(read(file)),
+              (std::vector<std::string>{"guessed-spacing", "guessed-orientation"}));
+}
+
+TEST(NrrdGeometry, SpacingsThatContradictTheDirectionsAreRefused) {
+    NrrdFile file;
+    file.directions = "space directions: (2,0,0) (0,3,0) (0,0,4)\n";
+    file.extra = "spacings: 2 3 4\n";
+    expectNear(read(file).volume.view().geometry().spacingMm(), {2, 3, 4}, 0);
+    file.extra = "spacings: nan nan NaN\n";
+    expectNear(read(file).volume.view().geometry().spacingMm(), {2, 3, 4}, 0);
+    file.extra = "spacings: 2 3 5\n";
+    expectRefusedNrrd(file, "spacing of axis 2 is 5, and its space direction is 4 long");
+    file.extra = "units: \"um\" \"um\" \"um\"\n";
+    expectRefusedNrrd(file, "units and space units differ");
 }
 
 TEST(NrrdGeometry, RefusesSpacesThatDoNotNameTheSides) {
@@ -143,7 +190,7 @@ TEST(NrrdData, DetachedDataMustLieBesideTheHeader) {
     expectRefusal(writeFile(inner, header("../x.raw")), "outside its own folder");
     expectRefusal(writeFile(inner, header((folder / "x.raw").native())), "outside its own folder");
     expectRefusal(writeFile(inner, header("x.nhdr")), "itself");
-    expectRefusal(writeFile(inner, header("x%03d.raw 1 2 1")), "no plain file name");
+    expectRefusal(writeFile(inner, header("x%03d.raw 1 2 1")), "list or pattern");
     writeFile(folder / "x.raw", kSamples.substr(1));
     EXPECT_NE(refusalOf(folder / "x.nhdr").find("truncated"), std::string::npos);
 }
