@@ -105,6 +105,10 @@ void addZarrSeeds(Seeds& seeds) {
         R"("datasets":[{"path":"0","coordinateTransformations":[{"type":"scale","scale":[3,2,1]},)"
         R"({"type":"translation","translation":[1,2,3]}]},{"path":"0"}]}])";
     seeds.add("zarr", "{" + multiscales + "}" + std::string(1, '\0') + std::string(60, 'x'));
+    seeds.add("zarr", R"({"multiscales":[{"axes":[{"name":"z","type":"space","unit":" "},)"
+                      R"({"name":"y","type":"space"},{"name":"x","type":"space","unit":"px"}],)"
+                      R"("datasets":[{"path":"0"}]}]})" +
+                          std::string(1, '\0') + std::string(60, 'x'));
     seeds.add("zarr",
               R"({"zarr_format":3,"node_type":"group","attributes":{"ome":{"version":"0.5",)" +
                   multiscales + "}}}" + std::string(1, '\0') + std::string(60, 'x'));

@@ -194,8 +194,7 @@ const ZarrJson& memberOfEither(const ZarrJson& own, const ZarrJson& group, const
 }
 
 void takeUnit(const fs::path& file, const std::string& unit, ZarrAxis& axis) {
-    const bool isNone = unit.empty() || unit == "pixel" || unit == "pixels" || unit == "px";
-    if (axis.kind == ZarrAxis::Kind::Space && !isNone) axis.toMm = requireMillimetresOf(file, unit);
+    if (axis.kind == ZarrAxis::Kind::Space) axis.toMm = millimetresOf(file, unit);
 }
 
 /// Sizes of voxels of the finest resolution: n5-viewer's pixelResolution, or resolution and units.
@@ -209,11 +208,15 @@ void takeResolution(const fs::path& file, const ZarrJson& own, const ZarrJson& g
         const std::string name = unit.is_string() ? unit.get<std::string>() : isList ? "um" : "";
         scene.scale = numbersFor(file, isList ? pixel : memberOf(pixel, "dimensions"), rank,
                                  "pixelResolution");
+        scene.saysScale = true;
         for (ZarrAxis& axis : scene.axes) takeUnit(file, name, axis);
         return;
     }
     const ZarrJson& resolution = memberOfEither(own, group, "resolution");
-    if (!resolution.is_null()) scene.scale = numbersFor(file, resolution, rank, "resolution");
+    if (!resolution.is_null()) {
+        scene.scale = numbersFor(file, resolution, rank, "resolution");
+        scene.saysScale = true;
+    }
     const ZarrJson& units = memberOfEither(own, group, "units");
     if (units.is_null()) return;
     for (std::size_t n = 0; n < rank; ++n) {

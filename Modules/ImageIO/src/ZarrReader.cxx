@@ -15,6 +15,7 @@
 #include "ZarrImage.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Surplus.h"
 
 // Zarr's specifications 2 and 3 with sharding, OME-NGFF 0.4 and 0.5, N5.
 namespace adaptiso::detail {
@@ -122,9 +123,14 @@ ImageGeometry geometryOf(const fs::path& root, const ZarrArray& array, const Zar
         scene.warnings.push_back({"guessed-spacing",
                                   "an array says neither the size of its voxels nor where "
                                   "they lie; 1 mm was taken"});
-    } else if (!hasUnits && hasUnit) {
+    } else if (!scene.saysScale) {
+        scene.warnings.push_back(
+            {"guessed-spacing",
+             "it does not say the size of its voxels (a scale); a scale of 1 was taken"});
+    }
+    if (!scene.axes.empty() && !hasUnits && hasUnit) {
         refuse(root, "some of its axes in space have a unit, others none", "repair the metadata");
-    } else if (!hasUnits) {
+    } else if (!scene.axes.empty() && !hasUnits) {
         scene.warnings.push_back({"guessed-unit", "its axes have no unit; millimetres were taken"});
     }
     scene.warnings.push_back(
@@ -404,25 +410,51 @@ private:
     std::atomic<std::int64_t> missing_{0}, chunks_{0};
 };
 
-/// Reads each file once, several at a time unless chunks are so large that memory would be short.
-void assemble(const ZarrStore& store, const ZarrArray& array, Assembly& assembly) {
+/// \param counts  along each axis
+std::uint64_t requireFewFiles(const fs::path& root, const std::array<std::uint64_t, 3>& counts) {
     constexpr std::uint64_t kMostFiles = std::uint64_t{1} << 20;
-    constexpr std::uint64_t kLargeChunk = std::uint64_t{64} << 20;  // bytes
     std::uint64_t files = 1;
-    for (const std::uint64_t count : assembly.files()) {
-        files = requireProduct(store.root(), files, count);
-    }
+    for (const std::uint64_t count : counts) files = requireProduct(root, files, count);
     if (files > kMostFiles) {
-        refuse(store.root(),
+        refuse(root,
                fmt::format("consists of {} files, more than the {} that are read here", files,
                            kMostFiles),
                "take a coarser level (--level), or write it in larger chunks or shards");
     }
+    return files;
+}
+
+/// Reads each file once, several at a time unless chunks are so large that memory would be short.
+void assemble(const ZarrStore& store, const ZarrArray& array, Assembly& assembly) {
+    constexpr std::uint64_t kLargeChunk = std::uint64_t{64} << 20;  // bytes
+    const std::uint64_t files = requireFewFiles(store.root(), assembly.files());
     const bool isSerial = array.chunkSamples() * bytesPerPixel(array.type) > kLargeChunk;
     const auto count = static_cast<std::int64_t>(files);
     parallelForPieces(count, isSerial ? count : 1, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n) assembly.addFile(static_cast<std::uint64_t>(n));
     });
+}
+
+/// \throws FileError  the image is so large for the files of its chunks, however often these are
+///                    named, that there is next to nothing in it
+void requirePlausibleSize(const ZarrImage& image) {
+    const ZarrRegion whole{{0, 0, 0}, image.geometry.size};
+    const std::uint64_t bytes =
+        requireImageBytes(image.store.root(), image.geometry.size, image.array.type);
+    if (kImageUnpackLimit.allows(0, bytes)) return;
+    const TouchedFiles touched(image.array, image.cut, whole);
+    const std::uint64_t files = requireFewFiles(image.store.root(), touched.counts());
+    std::uint64_t stored = 0;
+    for (std::uint64_t n = 0; n < files; ++n) {
+        const auto file = image.store.open(image.array.key(touched.indexOf(n)));
+        if (file) stored += file->size();
+        if (kImageUnpackLimit.allows(stored, bytes)) return;
+    }
+    refuse(image.store.root(),
+           fmt::format("its chunks of {} bytes expand to a size of {}, as only a decompression "
+                       "bomb or an empty image does",
+                       stored, bytes),
+           "take a coarser level (--level), or adaptiso-giant, which works tile by tile");
 }
 
 }  // namespace
@@ -484,6 +516,7 @@ void forEachZarrFile(const ZarrImage& image, const ZarrRegion& region,
 
 ReadVolume readZarr(const fs::path& folder, const ReadOptions& options) {
     ZarrImage image = openZarrImage(folder, options);
+    requirePlausibleSize(image);
     ZarrPart part = readZarrPart(image, {{0, 0, 0}, image.geometry.size});
     if (part.missing > 0) {
         const std::string text =

@@ -10,6 +10,7 @@
 #include "FileFault.h"
 #include "ZarrArray.h"
 #include "ZarrStore.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -20,7 +21,7 @@ namespace {
     refuse(file, fmt::format("its metadata are damaged: {}", fault), "repair them");
 }
 
-std::optional<double> millimetresOf(std::string_view unit) {
+std::optional<double> knownMillimetresOf(std::string_view unit) {
     constexpr std::pair<std::string_view, double> kUnits[] = {
         {"angstrom", 1e-7},   {"picometer", 1e-9}, {"nanometer", 1e-6}, {"nm", 1e-6},
         {"micrometer", 1e-3}, {"micron", 1e-3},    {"um", 1e-3},        {"\u00b5m", 1e-3},
@@ -43,8 +44,7 @@ ZarrAxis axisOf(const fs::path& file, const ZarrJson& json) {
     const ZarrJson& unit = memberOf(json, "unit");
     const ZarrJson& said = unit.is_null() ? memberOf(json, "units") : unit;  // real ones write that
     if (said.is_null()) return axis;
-    axis.toMm =
-        requireMillimetresOf(file, said.is_string() ? said.get<std::string>() : shownJson(said));
+    axis.toMm = millimetresOf(file, said.is_string() ? said.get<std::string>() : shownJson(said));
     return axis;
 }
 
@@ -77,6 +77,7 @@ void apply(const fs::path& file, const ZarrJson& transformations, ZarrScene& sce
         const std::vector<double> factors = factorsOf(file, memberOf(one, type.c_str()), rank);
         for (std::size_t n = 0; n < rank; ++n) {
             if (type == "scale") {
+                scene.saysScale = true;
                 scene.scale[n] *= factors[n];
                 scene.shift[n] *= factors[n];
             } else {
@@ -185,10 +186,12 @@ bool isZarrFolder(const fs::path& folder) {
            isN5Folder(folder);
 }
 
-double requireMillimetresOf(const fs::path& file, const std::string& unit) {
-    const std::optional<double> mm = millimetresOf(unit);
-    if (mm) return *mm;
-    refuse(file, fmt::format("its unit {} is not known here", printable(unit)),
+std::optional<double> millimetresOf(const fs::path& file, const std::string& unit) {
+    const std::string_view name = trimmed(unit);
+    if (name.empty() || name == "pixel" || name == "pixels" || name == "px") return std::nullopt;
+    const std::optional<double> mm = knownMillimetresOf(name);
+    if (mm) return mm;
+    refuse(file, fmt::format("its unit '{}' is not known here", printable(unit)),
            "write micrometer, millimeter, ...");
 }
 

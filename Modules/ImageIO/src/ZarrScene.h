@@ -26,6 +26,7 @@ struct ZarrScene {
     std::string path;                  ///< of the array
     std::vector<ZarrAxis> axes;        ///< of its dimensions; may be empty (unknown)
     std::vector<double> scale, shift;  ///< of each dimension, in its units: scale * index + shift
+    bool saysScale = false;            ///< else `scale` is 1, or a level's alone
     std::int64_t levels = 1;
     std::vector<Warning> warnings;
 };
@@ -38,8 +39,9 @@ ZarrScene findZarrScene(const ZarrStore& store, std::int64_t level);
 /// The folder holds what the metadata of Zarr or N5 are kept in.
 bool isZarrFolder(const std::filesystem::path& folder);
 
-/// Millimetres in a unit of UDUNITS-2, as NGFF names them, or its symbol. \throws FileError
-double requireMillimetresOf(const std::filesystem::path& file, const std::string& unit);
+/// Millimetres in a unit of UDUNITS-2, as NGFF names them, or its symbol; none for blanks and
+/// pixels. \throws FileError  unknown
+std::optional<double> millimetresOf(const std::filesystem::path& file, const std::string& unit);
 
 [[noreturn]] void refuseLevel(const std::filesystem::path& file, std::int64_t level,
                               std::int64_t levels);

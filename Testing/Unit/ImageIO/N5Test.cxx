@@ -182,6 +182,13 @@ TEST_F(N5Test, UnitsOfPixelsAreNone) {
     EXPECT_NE(read.warnings.front().text.find("have no unit"), std::string::npos);
 }
 
+TEST_F(N5Test, ResolutionsThatAreNotSaidAreGuessedWithAWarning) {
+    putArray("", R"(, "axes": ["x", "y", "z"], "units": ["nm", "nm", "nm"])");
+    EXPECT_EQ(readVolume(root_).warnings.front().code, "guessed-spacing");
+    putArray("", R"(, "resolution": [1, 1, 1], "units": [" ", "", "px"])");
+    EXPECT_EQ(readVolume(root_).warnings.front().code, "guessed-unit");
+}
+
 TEST_F(N5Test, DamagedBlocksAreRefused) {
     putArray("");
     const std::pair<Text, std::string> wrong[] = {
@@ -233,7 +240,7 @@ TEST_F(N5Test, WhatIsNotReadIsRefusedByName) {
         {metadata(R"({"type": "raw"})", R"(, "pixelResolution": [1, 0, 1])"), "pixelResolution"},
         {metadata(R"({"type": "raw"})", R"(, "pixelResolution": {"unit": "furlong",
                                             "dimensions": [1, 1, 1]})"),
-         "unit furlong"},
+         "unit 'furlong'"},
         {metadata(R"({"type": "raw"})", R"(, "axes": ["x", "y"])"), "axes"},
         {metadata(R"({"type": "raw"})", R"(, "resolution": [1, 1, 1], "units": "nm")"), "units"},
         {metadata(R"({"type": "raw"})", R"(, "affineTransform": [1])"), "affineTransform"},

@@ -82,7 +82,7 @@ TEST_F(OmeZarrTest, Version05LiesInTheAttributes) {
 TEST_F(OmeZarrTest, OtherVersionsUnitsAndPathsAreRefusedByName) {
     const std::pair<std::string, std::string> wrong[] = {
         {R"({"multiscales": )" + multiscales(R"("version": "0.3", )") + "}", "OME-Zarr 0.3"},
-        {R"({"multiscales": )" + multiscales("", "furlong") + "}", "unit furlong"},
+        {R"({"multiscales": )" + multiscales("", "furlong") + "}", "unit 'furlong'"},
         {R"({"bioformats2raw.layout": 3})", "holds several images"},
         {R"({"multiscales": []})", "multiscales is no list"},
         {R"({"multiscales": [{"axes": [{"name": "x", "type": "space"}],
@@ -111,6 +111,28 @@ TEST_F(OmeZarrTest, UnitsOfSomeAxesOnlyAreRefused) {
     put(".zgroup", R"({"zarr_format": 2})");
     putLevel("0", 1, 2);
     expectRefused("some of its axes in space have a unit, others none", at(1, 2));
+}
+
+TEST_F(OmeZarrTest, WithoutScaleOrUnitTheyAreGuessedWithAWarning) {
+    const auto codes = [&] {
+        std::vector<std::string> found;
+        for (const Warning& warning : readVolume(root_, at(1, 2)).warnings) {
+            found.push_back(warning.code);
+        }
+        return found;
+    };
+    putLevel("0", 1, 2);
+    put(".zgroup", R"({"zarr_format": 2})");
+    for (const char* const blank : {"", " ", "\\t ", "pixel"}) {
+        put(".zattrs", R"({"multiscales": )" + multiscales(R"("version": "0.4", )", blank) + "}");
+        EXPECT_EQ(codes(), (std::vector<std::string>{"guessed-unit", "guessed-orientation"}))
+            << blank;
+    }
+    put(".zattrs", R"({"multiscales": [{"version": "0.4", "axes": [{"name": "t", "type": "time"},
+        {"name": "c", "type": "channel"}, {"name": "z", "type": "space", "unit": "millimeter"},
+        {"name": "y", "type": "space", "unit": "millimeter"},
+        {"name": "x", "type": "space", "unit": "millimeter"}], "datasets": [{"path": "0"}]}]})");
+    EXPECT_EQ(codes(), (std::vector<std::string>{"guessed-spacing", "guessed-orientation"}));
 }
 
 }  // namespace

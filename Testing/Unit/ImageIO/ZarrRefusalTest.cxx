@@ -105,7 +105,7 @@ TEST_F(ZarrRefusalTest, MetadataAsDeepAsAHostileFileLikesAreRefused) {
         expect("endian");
         put(".zattrs", R"({"multiscales": [{"axes": [{"name": "x", "type": "space", "unit": )" +
                            deep + "}]}]}");
-        expect("unit [...]");
+        expect("unit '[...]'");
     }
 }
 
