@@ -160,7 +160,8 @@ Volume decodePlanes(const fs::path& input, const std::vector<DicomFile>& files,
     const SliceStore store{samples.get(), type, geometry.size[0], geometry.size[1]};
 
     std::vector<std::byte> frame;
-    std::size_t filesWithStrayBits = 0, filesWithPadding = 0;
+    std::size_t filesWithStrayBits = 0, filesWithPadding = 0, filesWithMore = 0;
+    std::uint64_t mostBehind = 0;
     for (std::size_t file = 0; file < files.size(); ++file) {
         std::vector<std::size_t>& slices = slicesOfFile[file];
         if (slices.empty()) continue;
@@ -189,6 +190,14 @@ Volume decodePlanes(const fs::path& input, const std::vector<DicomFile>& files,
         }
         filesWithStrayBits += frames.hasStrayBits() ? 1 : 0;
         filesWithPadding += frames.hasPadding() ? 1 : 0;
+        filesWithMore += files[file].header.bytesBehind > 0 ? 1 : 0;
+        mostBehind = std::max(mostBehind, files[file].header.bytesBehind);
+    }
+    if (filesWithMore > 0) {
+        warnings.push_back(
+            {"trailing-bytes", fmt::format("{} of its files hold bytes behind their data set, at "
+                                           "most {}; they were left out",
+                                           filesWithMore, mostBehind)});
     }
     if (filesWithPadding > 0) {
         warnings.push_back(

@@ -9,6 +9,7 @@
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Readers.h"
+#include "adaptiso/Core/Surplus.h"
 
 // DICOM PS3.5, chapter 7 (data elements, sequences) and annex A.4 (encapsulated pixel data).
 namespace adaptiso::detail {
@@ -161,7 +162,7 @@ private:
         }
         while (position_ < limit(end)) {
             if (isMetaGroup_ && !nextIsMetaGroup()) enterDataset();
-            if (depth == 0 && header_.pixelData && onlyZerosRemain()) break;
+            if (depth == 0 && header_.pixelData && isBehindDataset()) break;
             const Element element = takeElement(end);
             if (element.tag == kItemEnd || element.tag == kSequenceEnd) {
                 if (depth == 0) refuseDamaged("a sequence ends that never began");
@@ -294,11 +295,31 @@ private:
         return offsets;
     }
 
-    /// Some writers pad files with zeros.
-    bool onlyZerosRemain() {
-        constexpr std::uint64_t kMostPadding = 1 << 16;
+    /// True behind the last element of the data set: some writers pad files with zeros, or leave
+    /// there what the file held before. Pixel data are followed by private groups, signatures and
+    /// padding (PS3.6), in ascending order (PS3.5, 7.1).
+    /// \throws FileError  another DICOM file begins there
+    bool isBehindDataset() {
         const std::uint64_t left = bytes_.size() - position_;
-        return left <= kMostPadding && peek(left).find_first_not_of('\0') == std::string::npos;
+        if (left <= kMostPadding && areZeros(peek(left))) return true;
+        if (left >= 8) {
+            const std::string bytes = peek(8);
+            const HeaderBytes head(bytes, syntax_.byteOrder);
+            const unsigned group = head.at<std::uint16_t>(0), pixelGroup = tag::kPixelData >> 16;
+            const bool isLater =
+                group > pixelGroup ? group % 2 == 1 || group >= 0xFFFA : group == pixelGroup;
+            const bool isItem = group == kItem >> 16;  // which has no type
+            const auto length = head.at<std::uint32_t>(4);
+            const bool isElement = syntax_.isExplicit
+                                       ? firstElementIsExplicit()
+                                       : length == kUndefinedLength || length <= left - 8;
+            if (isLater && (isItem || isElement)) return false;
+        }
+        if (left >= kPreambleBytes + 4 && peek(kPreambleBytes + 4).ends_with("DICM")) {
+            refuse(file_, "holds another DICOM file behind its data set", "split the two files");
+        }
+        header_.bytesBehind = left;
+        return true;
     }
 
     fs::path file_;

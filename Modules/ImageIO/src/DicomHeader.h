@@ -141,6 +141,7 @@ struct DicomHeader {
     bool isBigEndian = false;
     std::optional<std::uint64_t> deflatedFrom;  ///< where the deflated data set begins
     std::optional<DicomPixelData> pixelData;    ///< at top level: an icon's pixels do not count
+    std::uint64_t bytesBehind = 0;              ///< the data set, without padding by zeros
     bool hasFloatPixelData = false;
     bool hasOverlayInPixels = false;  ///< the bits above HighBit hold an overlay
     std::string siemensCsa;           ///< of a mosaic: the CSA image header, else empty

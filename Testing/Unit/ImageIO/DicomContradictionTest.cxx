@@ -178,6 +178,32 @@ TEST(DicomMorePixels, TwoPixelDataElementsAreRefused) {
     expectRefusal(writeFile(folder / "x", file + element), "pixel data twice");
 }
 
+TEST(DicomMorePixels, BytesBehindTheDataSetAreLeftOut) {
+    const TempFolder folder;
+    for (const char* const syntax : {kExplicitLittleEndian, kImplicitLittleEndian}) {
+        const std::string file = multiFrame(4, 4).file(syntax);
+        const auto codes = [&](const std::string& behind) {
+            std::vector<std::string> found;
+            const ReadVolume read = readVolume(writeFile(folder / "x", file + behind));
+            EXPECT_EQ(read.volume.view().geometry().size[2], 4);
+            for (const Warning& warning : read.warnings) found.push_back(warning.code);
+            return found;
+        };
+        EXPECT_EQ(codes(""), std::vector<std::string>{});
+        EXPECT_EQ(codes(std::string(200, '\0')), std::vector<std::string>{});
+        // what the samples of other slices look like
+        const std::string samples = file.substr(file.size() - 200);
+        EXPECT_EQ(codes(samples), std::vector<std::string>{"trailing-bytes"});
+        EXPECT_EQ(codes("abc"), std::vector<std::string>{"trailing-bytes"});
+        // elements that may follow pixel data: padding, a private group
+        EXPECT_EQ(codes(syntax == std::string(kExplicitLittleEndian)
+                            ? std::string("\xFC\xFF\xFC\xFFOB\0\0\4\0\0\0abcd", 16)
+                            : std::string("\xFC\xFF\xFC\xFF\4\0\0\0abcd", 12)),
+                  std::vector<std::string>{});
+        expectRefusal(writeFile(folder / "x", file + file), "another DICOM file");
+    }
+}
+
 // ---- slices of one series that mean different things
 
 TEST(DicomAgreement, Monochrome1And2InOneSeriesAreRefused) {
