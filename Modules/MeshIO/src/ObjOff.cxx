@@ -82,6 +82,7 @@ public:
         ByteSource line(text.substr(0, findComment(text)));
         const std::string_view kind = line.word();
         if (kind == "v") {
+            beginPoint();
             mesh_.points.push_back(readVec(line, "a coordinate"));
             colors_.add(line, ColorScale::One);
         } else if (kind == "vn") {
@@ -94,6 +95,13 @@ public:
     }
 
     MeshFile finish() && {
+        // OBJ counts nothing, but numbers go on through a file, and begin anew in the next
+        if (blocks_ > 1 && largestUsed_ < largestBlock_) {
+            unsupported(
+                "it holds points behind its faces, and no face numbers them from where the "
+                "points before end",
+                "are two files joined? give each by itself");
+        }
         finishNormals();
         MeshFile file{std::move(mesh_), marks_.frame(), std::nullopt};
         file.pointArrays = colors_.take(file.mesh.points.size());
@@ -136,6 +144,17 @@ private:
         if (corners < 3) malformed("a face has " + std::to_string(corners) + " corners");
         if (corners > 3) refusePolygon(corners);
         mesh_.triangles.push_back(triangle);
+        isAmongPoints_ = false;
+        largestUsed_ = std::max(largestUsed_, *std::ranges::max_element(triangle));
+    }
+
+    void beginPoint() {
+        if (!isAmongPoints_) {
+            ++blocks_;
+            blockPoints_ = 0;
+        }
+        isAmongPoints_ = true;
+        largestBlock_ = std::max(largestBlock_, ++blockPoints_);
     }
 
     /// "v", "v/vt", "v//vn" or "v/vt/vn"; "v/", "v//" and "v/vt/" have no normal.
@@ -169,6 +188,9 @@ private:
     std::vector<Normal> normals_;         ///< as listed in the file
     std::vector<std::int64_t> normalOf_;  ///< of each vertex; kNone where no face gave one yet
     bool oneNormalEach_ = true;
+    bool isAmongPoints_ = false;  ///< no face since the last point
+    std::int64_t blocks_ = 0, blockPoints_ = 0, largestBlock_ = 0;  ///< of points between faces
+    VertexId largestUsed_ = -1;
 };
 
 }  // namespace

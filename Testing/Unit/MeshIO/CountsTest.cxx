@@ -179,6 +179,21 @@ TEST(Counts, UnsetByAStreamWriterAreSetToWhatIsThere) {
     }
 }
 
+TEST(Counts, JoinedObjFilesAreKnownByTheirNumbers) {
+    const std::string large = written(ball(), "a.obj"),
+                      small = written(testing::tetrahedron(), "a.obj");
+    for (const std::string& joined :
+         {large + large, small + large, large + small, small + small + large}) {
+        EXPECT_NE(fault(joined, "a.obj").find("are two files joined?"), std::string::npos);
+    }
+    // one file of two bodies, numbered on or back
+    const std::string body = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    EXPECT_EQ(decoded(body + "f 1 2 3\n" + body + "f 4 5 6\n", "a.obj").mesh.triangles.size(), 2U);
+    EXPECT_EQ(decoded(body + "f -3 -2 -1\n" + body + "f -3 -2 -1\n", "a.obj").mesh.triangles.size(),
+              2U);
+    EXPECT_EQ(decoded(body + "f 1 2 3\nv 1 1 0\nf 2 4 3\n", "a.obj").mesh.triangles.size(), 2U);
+}
+
 TEST(Counts, MoreThanAreThereAreRefused) {
     std::string stl = written(ball(), "a.stl");
     const std::uint32_t more = 321;
