@@ -28,14 +28,12 @@ std::string behind(const Counted& counted) {
 }
 
 /// Refuses bytes that begin as a surface does.
-void refuseSecondFile(const Counted& counted, std::string_view rest) {
+void requireNoSecondFile(const Counted& counted, std::string_view rest) {
     constexpr std::size_t kLeast = 12;  // fewer may be chance
     if (rest.size() < kLeast) return;
     const MeshFormat* format = recognizeMeshFormat(rest.substr(0, kMeshHeadBytes), rest.size());
     if (format == nullptr && rest.starts_with(fiff::kMagic)) format = &fiffFormat();
-    if (format == nullptr) return;
-    unsupported("it holds another surface (" + std::string(format->name) + ")" + behind(counted),
-                kRemedy);
+    if (format != nullptr) refuseSecondFile(counted, format->name);
 }
 
 void warn(const Counted& counted, std::string_view rest, std::vector<Warning>& warnings) {
@@ -48,10 +46,14 @@ void warn(const Counted& counted, std::string_view rest, std::vector<Warning>& w
 
 }  // namespace
 
+void refuseSecondFile(const Counted& counted, std::string_view name) {
+    unsupported("it holds another surface (" + std::string(name) + ")" + behind(counted), kRemedy);
+}
+
 void requireNoMore(const Counted& counted, std::string_view rest, std::vector<Warning>& warnings) {
     if (rest.empty()) return;
     if (rest.size() > kMostPadding || !areZeros(rest)) {
-        refuseSecondFile(counted, rest);
+        requireNoSecondFile(counted, rest);
         const auto record = static_cast<std::uint64_t>(counted.each);
         if (isMoreData(rest.size(), record, record * static_cast<std::uint64_t>(counted.count))) {
             refuseMore(counted, rest.size() % record == 0
@@ -65,7 +67,7 @@ void requireNoMore(const Counted& counted, std::string_view rest, std::vector<Wa
 void requireNoMoreText(const Counted& counted, std::string_view rest,
                        std::vector<Warning>& warnings) {
     if (trimmed(rest).empty()) return;
-    refuseSecondFile(counted, rest);
+    requireNoSecondFile(counted, rest);
     rest = trimmed(rest);
     std::int64_t numbers = 0;
     ByteSource words(rest);

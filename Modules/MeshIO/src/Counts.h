@@ -23,6 +23,9 @@ struct Counted {
 /// \throws FileError  they are more records, or begin as another surface does
 void requireNoMore(const Counted& counted, std::string_view rest, std::vector<Warning>& warnings);
 
+/// Refuses another file of the format `name` behind the records.
+[[noreturn]] void refuseSecondFile(const Counted& counted, std::string_view name);
+
 /// The same in text, where blanks are nothing.
 void requireNoMoreText(const Counted& counted, std::string_view rest,
                        std::vector<Warning>& warnings);

@@ -124,7 +124,12 @@ MeshFile decodeBinary(ByteSource source, FrameMarks marks) {
         if (attributeOf(bytes) != 0) ++attributes;
         if (hasMore) source.take(attributeOf(bytes));
     }
-    requireNoMore(triangles, source.rest(), file.warnings);
+    const std::string_view rest = source.rest();
+    constexpr std::size_t kBegin = kHeaderBytes + sizeof(std::uint32_t);
+    const bool isHeaderAndTriangles =
+        rest.size() >= kBegin && (rest.size() - kBegin) % kTriangleBytes == 0;
+    if (isHeaderAndTriangles && !areZeros(rest)) refuseSecondFile(triangles, "STL");
+    requireNoMore(triangles, rest, file.warnings);
     if (attributes > 0) {
         file.warnings.push_back({"attributes-left-out",
                                  std::to_string(attributes) + " triangles have " +

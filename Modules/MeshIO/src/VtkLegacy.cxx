@@ -172,7 +172,8 @@ private:
             if (i + 4 > cells.size()) damaged("its list of polygons breaks off");
             file_.mesh.triangles.push_back({cells[i + 1], cells[i + 2], cells[i + 3]});
         }
-        last_ = {"polygons", count, 4 * (isBinary_ ? std::int64_t{sizeof(std::int32_t)} : 1)};
+        last_ = {"polygons", count - (hasOffsets_ ? 1 : 0),
+                 4 * (isBinary_ ? std::int64_t{sizeof(std::int32_t)} : 1)};
         const std::int64_t there = std::ssize(cells) / 4 + (hasOffsets_ && count > 0 ? 1 : 0);
         if (there != count) {
             damaged("it counts " + std::to_string(count) + " polygons, and its list has " +

@@ -279,7 +279,7 @@ private:
                 block + 1 == blocks && last != 0 ? last : headerWord(header, 1);
             if (size > most - bytes.size()) {
                 damaged("its blocks of compressed data unpack to more than " +
-                        std::to_string(most) + " bytes");
+                        std::to_string(most) + " bytes, as many as it counts");
             }
             const std::uint64_t length = headerWord(header, 3 + block);
             bytes += inflated(std::string_view(packed).substr(begin, length), size);

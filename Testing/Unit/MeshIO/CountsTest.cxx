@@ -114,6 +114,13 @@ TEST(Counts, FewerThanAreThereAreRefused) {
               std::string::npos);
 }
 
+TEST(Counts, AHeaderOfStlBehindTheTrianglesIsAnotherFile) {
+    const std::string stl = written(ball(), "a.stl");
+    const std::string header = stl.substr(0, 80) + std::string(4, '\0');
+    expectMore(stl + header, "a.stl", "another surface");
+    expectMore(stl + header + stl.substr(84, 100), "a.stl", "another surface");  // its count unset
+}
+
 TEST(Counts, FewerTrianglesOfFreeSurferAreRefused) {
     const std::string bytes = written(ball(), "a.pial");
     // the number of triangles stands behind that of the points, in front of these
