@@ -24,6 +24,7 @@ ReadVolume readImage(const fs::path& path, const std::string& role, BemRun& run,
                      const ReadOptions& options = {}) {
     ReadVolume read = readVolume(path, options);
     run.model.inputs.push_back({baseName(path), role, read.format});
+    if (!read.scaling.empty()) run.scalings[path] = read.scaling;
     addWarnings(run.model.warnings, read.warnings, path.filename().string());
     return read;
 }
@@ -49,7 +50,13 @@ HeadBoundaries boundariesIn(const BemImages& images, BemRun& run,
     const auto naming = [&](const std::string& name) {
         const auto file = files.find(name);
         if (name == "probabilities") return "--" + name + " " + options.probabilities[0].string();
-        return "--" + name + (file == files.end() ? "" : " " + file->second.string());
+        if (file == files.end()) return "--" + name;
+        const auto scaling = run.scalings.find(file->second);
+        const bool areLabels = name == "labels" || name == "aseg";
+        return "--" + name + " " + file->second.string() +
+               (areLabels && scaling != run.scalings.end()
+                    ? " (its header scales the stored values: " + scaling->second + ")"
+                    : "");
     };
     return run.timer.time(
         "boundaries", [&] { return findBoundaries(run.model.source, images, boundaries, naming); });

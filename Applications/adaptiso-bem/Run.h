@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,6 +27,7 @@ struct BemRun : ProgramRun {
     BemModel model;
     std::vector<std::pair<std::string, std::uintmax_t>> files{};  ///< files of the folder, by name
     std::vector<std::filesystem::path> subjectFiles{};
+    std::map<std::filesystem::path, std::string> scalings{};  ///< ReadVolume::scaling of images
     std::optional<ReadVolume> shownImage{};  ///< for the report; empty unless one is wanted
 
     /// Takes over the model's warnings and prints those that are new.

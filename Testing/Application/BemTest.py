@@ -4,6 +4,7 @@ import json
 import math
 import os
 import re
+import struct
 import subprocess
 import unittest
 from pathlib import Path
@@ -522,6 +523,12 @@ class BadInput(BemTest):
         self.fails(BAD_INPUT, r"missing\.nii", "--t1", "missing.nii", "-o", "m")
         self.fails(BAD_INPUT, r"^adaptiso-bem: --labels seg\.nii: label 2 is named twice",
                    *self.labels(), "--tissue", "brain=2", "-o", "m")
+        labels = self.labels()
+        scaled = bytearray(self.path("seg.nii").read_bytes())
+        scaled[112:120] = struct.pack("<ff", 0.75, 0)  # scl_slope, scl_inter
+        self.path("seg.nii").write_bytes(scaled)
+        self.fails(BAD_INPUT, r"--labels seg\.nii \(its header scales the stored values: scl_slope 0\.75, "
+                              r"scl_inter 0\): .*no label of the tissue", *labels, "-o", "m")
         self.path("seg.nii").unlink()
         self.fails(BAD_INPUT, r"missing\.stl", "--surfaces", "missing.stl", "--meg", "-o", "m")
 

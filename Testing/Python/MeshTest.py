@@ -113,6 +113,20 @@ class Files(InFolder):
         self.assertEqual(pickle.loads(pickle.dumps(mesh)), mesh)
         self.assertEqual(adaptiso.simplify(mesh, max_error=0.1).frame, "unknown")
 
+    def test_counts_that_do_not_fit_the_file_are_warned_of_or_refused(self):
+        file = self.folder / "a.stl"
+        sphere().save(file)
+        stored = file.read_bytes()
+        file.write_bytes(stored[:80] + bytes(4) + stored[84:])  # as stream writers leave it
+        for read in (adaptiso.load, adaptiso.check):
+            with self.assertLogs("adaptiso", "WARNING") as logs:
+                read(file)
+            self.assertRegex(logs.output[0], "a.stl: its count of triangles is 0; the .* that follow")
+        file.write_bytes(stored + stored)
+        for read in (adaptiso.load, adaptiso.check):
+            with self.assertRaisesRegex(adaptiso.Error, "are two files joined"):
+                read(file)
+
     def test_an_unknown_frame_is_no_guess(self):
         known = sphere()
         known.save(self.folder / "a.tri")

@@ -78,7 +78,7 @@ void requireNoMoreText(const Counted& counted, std::string_view rest,
     if (numbers >= counted.each) {
         std::int64_t lines = 0;
         for (ByteSource left(rest); !left.atEnd();) lines += !trimmed(left.line()).empty();
-        refuseMore(counted, lines);
+        refuseMore(counted, counted.each == 1 ? numbers : lines);
     }
     warn(counted, rest, warnings);
 }

@@ -324,10 +324,10 @@ def mesh_data_of(value: Any, keeps_faults: bool,
     if is_path(value):
         if not keeps_faults:
             return load(value, input_coordinates=input_coordinates)._data
-        data, warnings = _adaptiso.read_mesh(checked_path("mesh", value), None, None, True,
-                                             input_coordinates)
+        name = checked_path("mesh", value)
+        data, warnings = _adaptiso.read_mesh(name, None, None, True, input_coordinates)
         for warning in warnings:
-            logger.warning("%s", warning.of(base_name(value)))
+            logger.warning("%s", warning.of(base_name(name)))
         return data
     if isinstance(value, (tuple, list)) and len(value) == 2:
         vertices, faces = value
