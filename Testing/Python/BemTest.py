@@ -362,6 +362,14 @@ class Electrodes(unittest.TestCase):
             self.assertGreater(cosine, 0.995)
         self.assertEqual(model.landmarks, {})
 
+    def test_places_that_are_missing_are_left_out_with_a_warning(self):
+        places = {"Cz": (0, 0, 80), "EOG": (np.nan,) * 3, "ECG": None, "T7": np.array([-90.0, 0, 0])}
+        model = adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), electrodes=places,
+                             **QUICK)
+        (warning,) = [w for w in model.report["warnings"] if w["code"] == "electrodes-left-out"]
+        self.assertIn("2 of its 4 points have no place and were left out: EOG, ECG", warning["text"])
+        self.assertEqual(list(model.electrodes), ["Cz", "T7"])
+
     def test_a_montage_has_its_positions(self):
         model = adaptiso.bem(
             labels=spheres(), tissues=TISSUES, affine=affine(), montage="10-20",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import math
 import os
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
@@ -375,7 +376,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         CSF: 1.79).
     electrodes : path or mapping of str to (float, float, float), optional
         Electrodes, moved onto the skin: a file (BIDS, ASA .elc, BESA .sfp, FIFF), or places by
-        name, scanner RAS mm.
+        name, scanner RAS mm. Those without a place (None, NaN) are left out with a warning.
     electrodes_in : {"ras", "lps", "tkras"}, optional
         The frame of the file. Default: what it says; else by its nasion and ears; else
         it is refused.
@@ -562,6 +563,15 @@ def _point(name: str, value: Any) -> Point:
     return x, y, z
 
 
+def _place(name: str, value: Any) -> Optional[Point]:
+    """None without a place: None, or NaN as MNE has it. \\raises Error"""
+    if value is None:
+        return None
+    parts = listed(name, value, "3 numbers")
+    is_missing = any(isinstance(part, (float, np.floating)) and math.isnan(part) for part in parts)
+    return None if is_missing else _point(name, parts)
+
+
 def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any) -> Dict[str, Any]:
     """Electrodes and landmarks, for C++. \\raises Error"""
     options: Dict[str, Any] = {"electrodes": None, "electrodes_name": "", "electrodes_in": None,
@@ -571,7 +581,7 @@ def _electrodes(electrodes: Any, frame: Any, montage: Any, landmarks: Any) -> Di
         for name in electrodes:
             if not isinstance(name, str) or not name.isprintable() or not name:
                 raise Error(f"electrodes {shown(name)}: must be text")
-        options["electrodes"] = [(name, _point(f"electrodes, {name}", place))
+        options["electrodes"] = [(name, _place(f"electrodes, {name}", place))
                                  for name, place in electrodes.items()]
         options["electrodes_name"] = "electrodes"
     elif electrodes is not None:

@@ -388,8 +388,13 @@ PointFile pointsOf(const py::object& electrodes) {
     file.format = "points";
     file.saysUnit = true;
     file.frame = CoordinateFrame::Ras;
-    for (const auto& [name, at] : electrodes.cast<std::vector<std::pair<std::string, Place>>>()) {
-        file.points.push_back({name, PointKind::Electrode, {at[0], at[1], at[2]}});
+    using Named = std::pair<std::string, std::optional<Place>>;
+    for (const auto& [name, at] : electrodes.cast<std::vector<Named>>()) {
+        if (!at) {
+            file.placeless.push_back(name);
+        } else {
+            file.points.push_back({name, PointKind::Electrode, {(*at)[0], (*at)[1], (*at)[2]}});
+        }
     }
     return file;
 }
