@@ -44,13 +44,19 @@ std::string textOf(const fs::path& root, const char* name) {
     return readFoundFile(root / name, root).value_or("");
 }
 
-BidsIgnore ignoredIn(const fs::path& root) {
-    const fs::path file = root / ".bidsignore";
+/// Calls `read` with the text of a file of the dataset.
+template <class Read>
+auto readText(const fs::path& root, const char* name, const Read& read) {
+    const std::string text = textOf(root, name);
     try {
-        return BidsIgnore(textOf(root, ".bidsignore"));
+        return read(text);
     } catch (const FileError& fault) {
-        throw FileError(file.string() + ": " + fault.what());
+        throw FileError((root / name).string() + ": " + fault.what());
     }
+}
+
+BidsIgnore ignoredIn(const fs::path& root) {
+    return readText(root, ".bidsignore", [](const std::string& text) { return BidsIgnore(text); });
 }
 
 void addImages(const fs::path& root, const fs::path& folder, const fs::path& target,
@@ -117,7 +123,7 @@ bool isLabel(std::string_view text) {
 }
 
 void requireDescription(const fs::path& root) {
-    const std::string key = missingKeyOf(textOf(root, kDescription));
+    const std::string key = readText(root, kDescription, missingKeyOf);
     if (key.empty()) return;
     throw InvalidInput(root.string() +
                        ": is no valid BIDS dataset: dataset_description.json has no " + key +

@@ -162,6 +162,7 @@ std::set<std::string> participantsIn(std::string_view text) {
 }
 
 std::string missingKeyOf(std::string_view description) {
+    requireText(description);
     const auto json = parseJson<Json>(description);
     for (const char* const key : {"Name", "BIDSVersion"}) {
         if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return key;

@@ -36,7 +36,7 @@ private:
 std::set<std::string> participantsIn(std::string_view text);
 
 /// "Name" or "BIDSVersion" where the text of dataset_description.json lacks it; empty if it has
-/// both.
+/// both. \throws FileError  it is no text
 std::string missingKeyOf(std::string_view description);
 
 }  // namespace adaptiso::bids

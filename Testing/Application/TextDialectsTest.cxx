@@ -261,7 +261,7 @@ TEST_F(TextDialects, OfUtf16AreNamed) {
     for (const Reader& reader : allReaders()) {
         const bool isXml = reader.text.starts_with("<?xml");  // which names its encoding
         const bool isFound = reader.name == "names in NRRD" || reader.name == "tetgen";
-        if (isXml || isFound || reader.name.ends_with(".json")) continue;
+        if (isXml || isFound) continue;
         for (const bool hasMark : {true, false}) {
             SCOPED_TRACE(reader.name);
             try {

@@ -52,7 +52,8 @@ void add(PointFile& file, std::string_view name, const Vec3& point, PointKind ki
         return static_cast<unsigned char>(c) >= ' ' && c != '\x7f';
     });
     if (name.empty() || name.size() > 100 || !isPlain) {
-        damaged("a point has the name " + printable(name));
+        unsupported("a point has the name " + printable(name),
+                    "give each a name of 1 to 100 characters");
     }
     if (std::isnan(point.x) || std::isnan(point.y) || std::isnan(point.z)) {
         file.placeless.emplace_back(name);
@@ -196,8 +197,9 @@ PointFile decodeTsv(std::string_view bytes) {
         const auto isFilled = [](const std::string& cell) { return !cell.empty(); };
         const auto surplus = row.begin() + std::min(std::ssize(row), std::ssize(header));
         if (row.size() < fewest || std::any_of(surplus, row.end(), isFilled)) {
-            damaged(linePlace(lines.number()) + "a row has " + std::to_string(row.size()) +
-                    " cells, the first line " + std::to_string(header.size()));
+            unsupported(linePlace(lines.number()) + "a row has " + std::to_string(row.size()) +
+                            " cells, the first line " + std::to_string(header.size()),
+                        "give each row the cells that the first line names");
         }
         const std::string& name = row[columns[0]];
         Vec3 point;

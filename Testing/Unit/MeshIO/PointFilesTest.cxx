@@ -195,6 +195,8 @@ TEST(PointFiles, RefuseDamageInOneLine) {
               std::string::npos);
     EXPECT_NE(refused("Cz 12,5 0 1\n", ".sfp").find("with a comma"), std::string::npos);
     EXPECT_NE(refused("name\tx\ty\tz\n", ".tsv").find("no point"), std::string::npos);
+    EXPECT_NE(refused("name\tx\ty\tz\n\t0\t0\t9\n", ".tsv").find("the name ''; give each a name"),
+              std::string::npos);
     EXPECT_NE(refused(tsv, ".tsv", "[1, 2]").find("no JSON object"), std::string::npos);
     EXPECT_NE(refused(tsv, ".tsv", R"({"EEGCoordinateUnits": "inch"})").find("mm, cm or m"),
               std::string::npos);
