@@ -206,11 +206,12 @@ ImageGeometry spacedGeometry(const fs::path& file, const NrrdHeader& header, con
     if (named > 0 && named < 3) {
         refuse(file, "some of its axes in space have a unit, others none", "repair the header");
     }
+    const double spaceMm = spaceUnitMm(file, header.find("spaceunits").value_or("")).value_or(1);
     Vec3 spacing;
     bool isConverted = false;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const AxisStep& step = steps[axis];
-        const double unitMm = step.spacing ? step.unitMm.value_or(1) : 1;
+        const double unitMm = step.spacing ? step.unitMm.value_or(spaceMm) : 1;
         isConverted = isConverted || unitMm != 1;
         spacing[static_cast<int>(axis)] = unitMm * step.spacing.value_or(1);
     }

@@ -77,6 +77,8 @@ TEST(NrrdGeometry, UnitsOfSpacingsBecomeMillimetres) {
     expectNear(read(file).volume.view().geometry().spacingMm(), {0.002, 0.003, 0.004}, 1e-12);
     EXPECT_EQ(codesOf(read(file)),
               (std::vector<std::string>{"unit-converted", "guessed-orientation"}));
+    file.extra = spacings + "space units: \"um\" \"um\" \"um\"\n";  // without a space
+    expectNear(read(file).volume.view().geometry().spacingMm(), {0.002, 0.003, 0.004}, 1e-12);
     // each axis has its own
     file.extra = spacings + "units: \"mm\" \"cm\" \"um\"\n";
     expectNear(read(file).volume.view().geometry().spacingMm(), {2, 30, 0.004}, 1e-12);
