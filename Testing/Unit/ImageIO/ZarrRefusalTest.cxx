@@ -109,6 +109,13 @@ TEST_F(ZarrRefusalTest, MetadataAsDeepAsAHostileFileLikesAreRefused) {
     }
 }
 
+TEST_F(ZarrRefusalTest, AnImageOfNextToNothingIsRefused) {
+    // 1.3 GB, of which no chunk is there
+    put(".zarray", R"({"zarr_format": 2, "shape": [1100, 1100, 1100], "chunks": [100, 100, 100],
+        "dtype": "|u1", "order": "C", "fill_value": 0, "filters": null, "compressor": null})");
+    expectRefused("its chunks of 0 bytes expand to a size of 1331000000");
+}
+
 TEST_F(ZarrRefusalTest, AChunkThatCannotBeOpenedIsNoFill) {
     if (geteuid() == 0) GTEST_SKIP() << "root may open everything";
     put(".zarray", metadata2("null"));
