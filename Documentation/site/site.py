@@ -19,7 +19,8 @@ import tomllib
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "Applications/*/README.md", "Data/README.md",
+PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "Applications/*/README.md",
+         "Applications/web/npm/README.md", "Data/README.md",
          "Examples/README.md", "Examples/*/README.md", "Documentation/*.md", "Documentation/Decisions/*.md",
          "Testing/Benchmark/README.md", "Testing/Fuzz/README.md", "Wrapping/Python/README.md",
          "Modules/Extraction/src/adaptive/README.md")
@@ -149,6 +150,16 @@ def assemble(source, site, python):
                                       if python else "This site was made without the Python package.\n"), encoding="utf-8")
 
 
+def take_normalize(html):
+    """Debian's furo imports normalize.css from /javascript, an alias of its web server."""
+    alias = "/javascript/normalize.css/normalize.css"
+    for style in (html / "_static" / "styles").glob("*.css"):
+        text = style.read_text(encoding="utf-8")
+        if alias in text:
+            shutil.copy(f"/usr/share{alias}", html / "_static")
+            style.write_text(text.replace(alias, "../normalize.css"), encoding="utf-8")
+
+
 def main():
     source, build, version, *python = sys.argv[1:]
     source, build = Path(source).resolve(), Path(build).resolve()
@@ -156,9 +167,11 @@ def main():
     shutil.rmtree(site, ignore_errors=True)
     site.mkdir(parents=True)
     assemble(source, site, python)
-    return subprocess.run([sys.executable, "-m", "sphinx", "-q", "-E", "-W", "--keep-going", "-b", "html", "-d", build / "doctrees", site, build / "html"],
+    code = subprocess.run([sys.executable, "-m", "sphinx", "-q", "-E", "-W", "--keep-going", "-b", "html", "-d", build / "doctrees", site, build / "html"],
                           env={**os.environ, "ADAPTISO_VERSION": version, "ADAPTISO_XML": str(build / "xml"),
                                "ADAPTISO_PYTHON": python[0] if python else ""}).returncode
+    take_normalize(build / "html")
+    return code
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 Needs the target `documentation` with a site, and Chromium; exits 77 (skipped) without them."""
 
 import os
+import re
 import sys
 import time
 import unittest
@@ -19,6 +20,7 @@ QUESTIONS = {  # what is typed: the page that answers
     "paraview": "TutorialAtlas.html",
     "extractSurface": "cpp/Extraction.html",
     "check_nested": "python.html",
+    "npx": "npm/README.html",
 }
 
 
@@ -37,6 +39,12 @@ class Search(unittest.TestCase):
                              browser.driver.find_elements("css selector", "ul.search li a")]
                     time.sleep(0.2)
                 self.assertTrue(any(page in link for link in found), found)
+
+    def test_styles_take_what_the_site_holds(self):
+        for style in SITE.glob("_static/**/*.css"):
+            for target in re.findall(r"""@import\s*(?:url\()?["']?([^"')]+)""", style.read_text(encoding="utf-8")):
+                self.assertTrue((style.parent / target).resolve().is_relative_to(SITE.resolve()), target)
+                self.assertTrue((style.parent / target).exists(), target)
 
     def test_start_page_answers_the_five_questions(self):
         text = (SITE / "index.html").read_text(encoding="utf-8")
