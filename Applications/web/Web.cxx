@@ -20,9 +20,12 @@
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Programs.h"
+#include "adaptiso-labels/Regions.h"
 #include "adaptiso-mesh/Info.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/ImageIO/ListSeries.h"
+#include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
@@ -81,7 +84,7 @@ struct OpenImage {
     ReadVolume read;
     std::optional<Volume> coarse;  ///< every n-th sample of it, for previews
     std::optional<SpanSpaceIndex> index;
-    std::vector<std::uint8_t> shades;
+    std::vector<std::uint8_t> shades;  ///< of a label map: two bytes a sample, the lower first
 };
 
 std::optional<OpenImage> image;
@@ -133,6 +136,44 @@ std::vector<std::uint8_t> shadesOf(const VolumeView& volume, double black, doubl
     });
 }
 
+/// For each sample the place of its label among `labels`, from 1; 0 for none of them.
+std::vector<std::uint8_t> labelPlaces(const VolumeView& volume,
+                                      const std::vector<std::int32_t>& labels) {
+    return dispatchPixelType(volume, [&]<class T>(const TypedVolumeView<T>& view) {
+        std::vector<std::uint8_t> places;
+        places.reserve(2 * static_cast<std::size_t>(view.geometry.voxelCount()));
+        double last = 0;
+        std::size_t place = 0;
+        for (std::int64_t n = 0; n < view.geometry.voxelCount(); ++n) {
+            if (const auto value = static_cast<double>(view.samples[n]); value != last) {
+                last = value;
+                const auto at = std::ranges::lower_bound(labels, value, {}, [](std::int32_t label) {
+                    return static_cast<double>(label);
+                });
+                const bool isThere = at != labels.end() && *at == value;
+                place = isThere ? static_cast<std::size_t>(at - labels.begin()) + 1 : 0;
+            }
+            places.push_back(static_cast<std::uint8_t>(place & 0xff));
+            places.push_back(static_cast<std::uint8_t>(place >> 8));
+        }
+        return places;
+    });
+}
+
+/// The labels of a map but for 0, ascending; empty where it is none, or has too many to colour.
+std::vector<std::int32_t> labelsOf(const VolumeView& volume) {
+    constexpr std::size_t kMost = 4095;  // colours in a row of a texture
+    std::vector<std::int32_t> found;
+    try {
+        const labels::LabelCensus census = labels::countLabels(volume);
+        if (census.voxels.size() > kMost) return {};
+        for (const auto& [label, voxels] : census.voxels) found.push_back(label);
+    } catch (const InvalidInput&) {
+        return {};
+    }
+    return found;
+}
+
 Json histogramJson(const ValueSummary& values) {
     if (!values.histogram) return nullptr;
     return {{"lower", number(values.histogram->lower)},
@@ -166,8 +207,14 @@ void openImage(const std::string& path, const ReadOptions& options, bool isLabel
     std::int64_t shownStep = 1, previewStep = 1;
     const Volume seen = withAtMost(image->read.volume, kMostShown, shownStep);
     const bool isFlat = !(at(kLow) < at(kHigh)) || isLabels;
-    image->shades = shadesOf(seen.view(), isFlat ? at(0) : at(kLow),
-                             isFlat ? at(std::size(kPercents) - 1) : at(kHigh));
+    const std::vector<std::int32_t> labels =
+        isLabels ? labelsOf(view) : std::vector<std::int32_t>();
+    image->shades = labels.empty() ? shadesOf(seen.view(), isFlat ? at(0) : at(kLow),
+                                              isFlat ? at(std::size(kPercents) - 1) : at(kHigh))
+                                   : labelPlaces(seen.view(), labels);
+    Json labelColorsJson = Json::array();
+    const std::vector<std::optional<LabelColor>> none(labels.size());
+    for (const LabelColor& color : labelColors(labels, none)) labelColorsJson.push_back(color);
     image->coarse = withAtMost(image->read.volume, kMostPreviewed, previewStep);
     image->index.emplace(SpanSpaceIndex::build(image->coarse->view(), {}));
     Json warnings = Json::array();
@@ -187,8 +234,28 @@ void openImage(const std::string& path, const ReadOptions& options, bool isLabel
                        {"warnings", warnings},
                        {"shownSize", seen.view().geometry().size},
                        {"shownAffine", affineJson(seen.view().geometry())},
-                       {"previewStep", previewStep}},
+                       {"previewStep", previewStep},
+                       {"labels", labels},
+                       {"labelColors", labelColorsJson}},
                       -1);
+}
+
+/// What people choose a series by. The description may identify a patient: it stays in the page.
+void listAllSeries(const std::string& path) {
+    Json list = Json::array();
+    for (const DicomSeries& series : listSeries(path).series) {
+        list.push_back({{"number", series.number},
+                        {"modality", series.modality},
+                        {"description", series.description},
+                        {"size", {series.columns, series.rows, series.slices}},
+                        {"volumes", series.volumes},
+                        {"spacingMm", {series.spacingMm.x, series.spacingMm.y, series.spacingMm.z}},
+                        {"orientation", series.orientation},
+                        {"localizer", series.isLocalizer},
+                        {"details", series.details},
+                        {"fault", series.fault}});
+    }
+    answer = jsonText(list, -1);
 }
 
 void preview(double isovalue) {
@@ -278,6 +345,10 @@ EMSCRIPTEN_KEEPALIVE int adaptisoOpenImage(const char* path, int volumeIndex, co
         if (*series != '\0') options.series = series;
         web::openImage(path, options, isLabels != 0);
     });
+}
+
+EMSCRIPTEN_KEEPALIVE int adaptisoListSeries(const char* path) {
+    return web::answering("adaptiso-mesh", [&] { web::listAllSeries(path); });
 }
 
 EMSCRIPTEN_KEEPALIVE int adaptisoPreview(double isovalue) {

@@ -1,5 +1,6 @@
 // Bundles the page into one file: node build.mjs BUILD-FOLDER VERSION, where BUILD-FOLDER holds adaptiso.js and
 // adaptiso.wasm.
+import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
@@ -23,16 +24,18 @@ const read = (path) => readFileSync(path);
 const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
 
 const kRun = `<div class="progress" hidden><p class="stage" aria-live="polite"></p><progress max="100" aria-label="Progress"></progress></div>
-    <p class="refusal" role="alert" hidden></p><p class="choices row"></p><div class="result" hidden></div>`;
+    <p class="refusal" role="alert" hidden></p><div class="choices row"></div><div class="result" hidden></div>`;
 const worker = `${read(join(folder, "adaptiso.js"))}\n${await bundle("src/worker.ts", "iife")}`;
+const niivue = inScript(await bundle("node_modules/@niivue/niivue/dist/index.js", "iife", { globalName: "niivue", plugins: [withoutCodecs] }));
+const script = inScript(await bundle("src/main.ts", "iife"));
 const parts = {
   STYLE: read(join(here, "src/page.css")).toString(),
   RUN: kRun,
   WASM: packed(read(join(folder, "adaptiso.wasm"))),
   WORKER: packed(worker),
-  NIIVUE: packed(inScript(await bundle("node_modules/@niivue/niivue/dist/index.js", "iife",
-    { globalName: "niivue", plugins: [withoutCodecs] }))),
-  SCRIPT: inScript(await bundle("src/main.ts", "iife")),
+  NIIVUE: packed(niivue),
+  SCRIPT: script,
+  HASHES: [script, niivue].map((text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`).join(" "),
 };
 const page = read(join(here, "src/page.html")).toString().replace(/\{\{([A-Z]+)\}\}/g, (_, name) => parts[name]);
 writeFileSync(join(folder, "adaptiso.html"), page);

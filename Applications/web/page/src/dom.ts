@@ -12,6 +12,16 @@ export function make<K extends keyof HTMLElementTagNameMap>(name: K, properties:
   return element;
 }
 
+/** Shows the names of what was given, each with a button that takes it back. */
+export function showGiven(place: HTMLElement, names: string[], remove: (n: number) => void): void {
+  place.replaceChildren(...names.map((name, n) => {
+    const button = make("button", { type: "button", className: "remove" }, "×");
+    button.setAttribute("aria-label", `Remove ${name}`);
+    button.addEventListener("click", () => remove(n));
+    return make("span", { className: "given" }, name, button);
+  }));
+}
+
 /** A spot of a colour beside its name. */
 export function swatch(color: number[]): HTMLElement {
   const spot = make("span", { className: "swatch" });

@@ -54,20 +54,25 @@ export function takeFiles(zone: HTMLElement, take: (files: InputFile[]) => void)
   }
 }
 
-/** What a program is given for them: the file, the header of several, or the folder that holds them. */
-export function inputPath(files: InputFile[]): string {
-  const first = files[0].path.split("/")[0];
-  if (files.every((file) => file.path.startsWith(`${first}/`))) return first;
-  if (files.length === 1) return files[0].path;
-  const header = files.find((file) => /\.(hdr|nhdr|mhd)$/i.test(file.path));
-  return header?.path ?? "";
-}
+/** The folder of slices that were chosen as files. */
+export const kSlices = "slices";
 
-/** Slices that were chosen as files are put into a folder. */
+/** Files that are an image by themselves, or the header of one. */
+const imagesOf = (files: InputFile[]): InputFile[] =>
+  files.filter((file) => /\.(nii|nii\.gz|nrrd|nhdr|mha|mhd|mgh|mgz|hdr)$/i.test(file.path));
+
+/** What a program is given for them: the image among them, or the folder that holds them. Slices that were chosen as
+ * files are put into one. \throws Error  they are several images */
 export function asInput(files: InputFile[]): { files: InputFile[]; path: string } {
-  const path = inputPath(files);
-  if (path !== "") return { files, path };
-  return { files: files.map((file) => ({ path: `slices/${file.path}`, data: file.data })), path: "slices" };
+  const first = files[0].path.split("/")[0], images = imagesOf(files);
+  if (files.every((file) => file.path.startsWith(`${first}/`))) return { files, path: first };
+  if (files.length === 1) return { files, path: files[0].path };
+  if (images.length > 1) {
+    throw new Error(`${images.map(({ path }) => path).join(" and ")} are ${images.length} scans: give one here`
+      + " (a mask has its own place, under Head model)");
+  }
+  if (images.length === 1) return { files, path: images[0].path };
+  return { files: files.map((file) => ({ path: `${kSlices}/${file.path}`, data: file.data })), path: kSlices };
 }
 
 export const stemOf = (path: string): string =>

@@ -1,10 +1,10 @@
 /** The page's side of the workers. */
-import type { InputFile, Message, OpenedImage, OpenedMesh, OpenRequest, Reply, Request, RunResult, Shape }
+import type { InputFile, Message, OpenedImage, OpenedMesh, OpenRequest, Reply, Request, RunResult, Series, Shape }
   from "./protocol";
 
 /** The line that the program would print, and its exit code. */
 export class Refused extends Error {
-  constructor(readonly line: string, readonly exitCode: number) { super(line); }
+  constructor(readonly line: string, readonly exitCode: number, readonly series: Series[] = []) { super(line); }
 }
 export class Cancelled extends Error {}
 
@@ -46,20 +46,33 @@ class Channel {
     }
     this.waiting.delete(reply.id);
     if (reply.kind === "done") one.resolve(reply.result);
-    else one.reject(new Refused(reply.line, reply.exitCode));
+    else one.reject(new Refused(reply.line, reply.exitCode, reply.series));
   }
 }
 
-/** Looks at one image: its facts, slices and previews. The one before goes, with its memory. */
+/** Looks at one image: its facts, slices and previews. The one before stays until another is open, then goes with its
+ * memory. */
 export class Looker {
   private channel: Channel | undefined;
+  private opening: Channel | undefined;
   constructor(private readonly make: () => Promise<Channel>) {}
 
+  /** \throws Cancelled  another was asked for meanwhile */
   async open(request: Omit<OpenRequest, "kind">): Promise<OpenedImage> {
-    this.close();
     const channel = await this.make();
-    this.channel = channel;
-    return channel.ask<OpenedImage>({ kind: "open", ...request });
+    this.opening?.end(new Cancelled());
+    this.opening = channel;
+    try {
+      const opened = await channel.ask<OpenedImage>({ kind: "open", ...request });
+      this.channel?.end(new Cancelled());
+      this.channel = channel;
+      return opened;
+    } catch (error) {
+      channel.end(new Cancelled());
+      throw error;
+    } finally {
+      if (this.opening === channel) this.opening = undefined;
+    }
   }
   async preview(isovalue: number): Promise<Shape> {
     if (this.channel === undefined) throw new Cancelled();
@@ -72,10 +85,6 @@ export class Looker {
   async mesh(file: InputFile, program: string): Promise<OpenedMesh> {
     this.channel ??= await this.make();
     return this.channel.ask<OpenedMesh>({ kind: "mesh", file, program });
-  }
-  close(): void {
-    this.channel?.end(new Cancelled());
-    this.channel = undefined;
   }
 }
 

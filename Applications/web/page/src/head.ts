@@ -1,10 +1,10 @@
 /** The tab Head model: adaptiso-bem of a T1, with or without a mask, or of a label map. */
-import { byId, formatCount, make } from "./dom";
+import { byId, formatCount, make, showGiven } from "./dom";
 import { takeFiles } from "./drop";
 import type { ImageFacts, InputFile, RunResult } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
 import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
-import { exampleHead } from "./nifti";
+import { exampleHead, kExampleTissues } from "./nifti";
 import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
 
@@ -15,23 +15,33 @@ interface HeadReport { notes: string[]; surfaces: { name: string; vertices: numb
 export class HeadTab {
   private readonly task: Task;
   private mask: InputFile | undefined;
+  private shown: ImageFacts | undefined;
 
   constructor(private readonly page: Page, private readonly scan: Scan) {
     this.task = new Task("head", page);
-    takeFiles(byId("mask-box"), ([file]) => {
-      this.mask = file;
-      byId("mask-name").textContent = file.path;
-    });
+    takeFiles(byId("mask-box"), ([file]) => this.setMask(file));
     byId("head-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
     byId("source").addEventListener("change", () => this.showSource());
     byId("head-example").addEventListener("click", async () => {
-      byId<HTMLSelectElement>("source").value = "t1";
+      byId<HTMLSelectElement>("source").value = "labels";
+      byId<HTMLSelectElement>("preset").value = "";
+      byId<HTMLInputElement>("tissues").value = kExampleTissues;
       this.showSource();
-      if (await scan.take(this.task, [{ path: "example.nii", data: exampleHead() }])) await this.make();
+      if (await scan.take(this.task, [{ path: "example-labels.nii", data: exampleHead(true) }], true)) await this.make();
     });
     takeFiles(byId("head-drop"), (files) => scan.take(this.task, files));
-    scan.onChange(() => { byId("head-scan").textContent = scan.facts === undefined ? "no scan yet" : scan.path; });
+    scan.onChange(() => {
+      if (scan.facts === undefined || scan.facts === this.shown) return;
+      byId("head-scan").textContent = scan.path;
+      if (this.shown !== undefined) this.setMask(undefined);  // it was the other scan's
+      this.shown = scan.facts;
+    });
     this.showSource();
+  }
+
+  private setMask(file: InputFile | undefined): void {
+    this.mask = file;
+    showGiven(byId("mask-name"), file === undefined ? [] : [file.path], () => this.setMask(undefined));
   }
 
   private showSource(): void {
@@ -73,7 +83,9 @@ export class HeadTab {
     const model = done.files.filter((file) => file.path.startsWith("model/"));
     if (report?.surfaces === undefined || done.exitCode !== 0) return;
     const title = `${report.surfaces.length} surfaces of ${report.surfaces.map((s) => formatCount(s.vertices)).join(", ")} `
-      + "vertices, closed, each inside the next; 0 pairs cross";
+      + "vertices, closed, each inside the next; 0 pairs cross"
+      + report.surfaces.filter(({ seenShare }) => (seenShare ?? 1) < 0.5)
+        .map(({ name, seenShare }) => `; ${name.replace("_", " ")} ${Math.round(100 - 100 * (seenShare ?? 0))} % guessed`).join("");
     const rows = report.surfaces.map((surface) => make("tr", {}, make("th", { scope: "row" }, surface.name.replace("_", " ")),
       make("td", {}, formatCount(surface.triangles)),
       make("td", { className: (surface.seenShare ?? 1) < 0.5 ? "guessed" : "seen" },

@@ -1,5 +1,5 @@
 /** The tab Labels: adaptiso-labels of a segmentation. */
-import { byId, formatCount, make, swatch } from "./dom";
+import { byId, formatCount, make, showGiven, swatch } from "./dom";
 import { takeFiles } from "./drop";
 import type { ImageFacts, InputFile, RunResult } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
@@ -7,31 +7,34 @@ import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from 
 import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
 
-interface Region { label: number; name: string; isNamed: boolean; color: unknown; voxels: number; volumeMm3: number;
+interface Region { label: number; name: string; isNamed: boolean; color: string; voxels: number; volumeMm3: number;
   triangles: number; file: string }
 interface LabelsReport { regions: Region[]; walls: { triangles: number; errorBoundMm: number } }
 
-/** A label's colour where its table has none: golden steps around the circle of hues. */
-function colorOf(region: Region, n: number): Color {
-  const given = region.color;
-  if (typeof given === "string" && /^#[0-9a-f]{6}/i.test(given)) {
-    return [1, 3, 5].map((at) => Number.parseInt(given.slice(at, at + 2), 16)) as Color;
-  }
-  if (Array.isArray(given) && given.length >= 3) return given.slice(0, 3) as Color;
-  const hue = n * 0.618 % 1;
-  return [0, 1 / 3, 2 / 3].map((shift) => Math.round(160 + 90 * Math.cos(2 * Math.PI * (hue + shift)))) as Color;
-}
+/** Of "#rrggbb". */
+const colorOf = ({ color }: Region): Color => [1, 3, 5].map((at) => Number.parseInt(color.slice(at, at + 2), 16)) as Color;
 
 export class LabelsTab {
   private readonly task: Task;
   private names: InputFile | undefined;
+  private shown: ImageFacts | undefined;
 
   constructor(private readonly page: Page, private readonly scan: Scan) {
     this.task = new Task("labels", page);
     takeFiles(byId("labels-drop"), (files) => scan.take(this.task, files, true));
-    scan.onChange(() => { if (scan.facts !== undefined) byId("labels-scan").textContent = scan.path; });
-    takeFiles(byId("names-drop"), ([file]) => { this.names = file; byId("names-name").textContent = file.path; });
+    scan.onChange(() => {
+      if (scan.facts === undefined || scan.facts === this.shown) return;
+      byId("labels-scan").textContent = scan.path;
+      if (this.shown !== undefined) this.setNames(undefined);  // they were the other map's
+      this.shown = scan.facts;
+    });
+    takeFiles(byId("names-drop"), ([file]) => this.setNames(file));
     byId("labels-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
+  }
+
+  private setNames(file: InputFile | undefined): void {
+    this.names = file;
+    showGiven(byId("names-name"), file === undefined ? [] : [file.path], () => this.setNames(undefined));
   }
 
   private runOf(facts: ImageFacts): Run {
@@ -53,19 +56,23 @@ export class LabelsTab {
     const { facts } = this.scan;
     if (facts === undefined) return this.task.refuse("Give a label map first.");
     const run = this.runOf(facts), done = await this.task.run(run);
-    if (done !== undefined && done.exitCode === 0) await this.show(run, done);
+    if (done !== undefined && done.exitCode === 0) await this.show(run, done, facts);
   }
 
-  private async show(run: Run, done: RunResult): Promise<void> {
+  private async show(run: Run, done: RunResult, facts: ImageFacts): Promise<void> {
     const report = reportOf(done) as unknown as LabelsReport, { regions } = report;
     const files = done.files.filter((file) => file.path.startsWith("regions-of-map/"));
     const list = make("ul", { className: "regions" });
     await this.task.show(`${formatCount(regions.length)} regions, ${formatCount(report.walls.triangles)} triangles; no wall farther than `
-      + `${Number(report.walls.errorBoundMm.toPrecision(3))} mm (proved); closed; 0 pairs cross`, run, done, [], [list]);
+      + `${Number(report.walls.errorBoundMm.toPrecision(3))} mm from its full resolution (proved); closed; 0 pairs cross`, run, done, [], [list]);
     this.task.addSave(`Save all regions (${files.length} files, zip)`, "regions.zip", () => zip(files), true);
     const surfaces: Surface[] = [];
-    for (const [n, region] of regions.entries()) {
-      const color = colorOf(region, n), index = surfaces.length;
+    const colors = new Map(regions.map((region) => [region.label, colorOf(region)]));
+    if (facts.labels.length > 0) {
+      await (await this.page.view())?.setLabelColors(facts.labels.map((label, n) => colors.get(label) ?? facts.labelColors[n]));
+    }
+    for (const region of regions) {
+      const color = colorOf(region), index = surfaces.length;
       const file = files.find((each) => each.path.endsWith(region.file));
       if (file === undefined) continue;
       const name = region.name || `label ${region.label}`;

@@ -19,6 +19,7 @@ export class MeshTab {
   private previewTriangles = 0;
   private wanted: number | undefined;
   private isPreviewing = false;
+  private shown: ImageFacts | undefined;
 
   constructor(private readonly page: Page, private readonly scan: Scan) {
     this.task = new Task("mesh", page);
@@ -42,7 +43,8 @@ export class MeshTab {
   private opened(): void {
     const facts = this.scan.facts;
     this.setReady(facts !== undefined);
-    if (facts === undefined) return;
+    if (facts === undefined || facts === this.shown) return;
+    this.shown = facts;
     const slider = byId<HTMLInputElement>("iso-slider");
     slider.min = String(facts.histogram?.lower ?? facts.minimum);
     slider.max = String(facts.histogram?.upper ?? facts.maximum);
@@ -54,7 +56,7 @@ export class MeshTab {
   }
 
   private setReady(isReady: boolean): void {
-    byId("mesh-options").toggleAttribute("disabled", !isReady);
+    byId("mesh-options").toggleAttribute("disabled", !isReady || this.scan.isReading);
     for (const id of ["scan-tools", "mesh-form"]) byId(id).hidden = !isReady;
   }
 
@@ -123,16 +125,16 @@ export class MeshTab {
   async make(): Promise<void> {
     const { facts } = this.scan;
     if (facts === undefined) return this.task.refuse("Give a scan first.");
-    const run = this.runOf(facts), done = await this.task.run(run);
+    const run = this.runOf(facts), smoothedBy = Number(number("smooth")), isovalue = number("iso"), done = await this.task.run(run);
     if (done === undefined || done.exitCode !== 0) return;
-    await this.show(run, done);
+    await this.show(run, done, `the isosurface at ${isovalue} of the scan${smoothedBy > 0 ? ` smoothed by ${smoothedBy} mm` : ""}`);
   }
 
-  private async show(run: Run, done: RunResult): Promise<void> {
+  private async show(run: Run, done: RunResult, source: string): Promise<void> {
     const [output] = outputsOf(done);
     const { surfaces: [surface] } = reportOf(done) as { surfaces: SurfaceReport[] };
     const title = [`${formatCount(surface.triangles)} triangles`,
-      ...(surface.errorBoundMm === null ? [] : [`no point farther than ${Number(surface.errorBoundMm.toPrecision(3))} mm (proved)`]),
+      ...(surface.errorBoundMm === null ? [] : [`no point farther than ${Number(surface.errorBoundMm.toPrecision(3))} mm from ${source} (proved)`]),
       surface.soundness.closed ? "closed" : "open",
       `${surface.soundness.crossingPairs ?? 0} pairs cross`,
       ...(/[\d,]+ pieces?(, [\d,]+ cavit(y|ies))?/.exec(done.stdout)?.slice(0, 1) ?? [])].join("; ");

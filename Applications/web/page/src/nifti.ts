@@ -1,7 +1,7 @@
 /** NIfTI-1 files that the page itself makes: what niivue shows, and the example. */
 
-/** \param affine  three rows of four, RAS mm */
-export function nifti(size: number[], affine: number[], samples: Uint8Array): Uint8Array<ArrayBuffer> {
+/** \param affine  three rows of four, RAS mm  \param sampleBytes  of a sample: 1, or 2 with the lower first */
+export function nifti(size: number[], affine: number[], samples: Uint8Array, sampleBytes = 1): Uint8Array<ArrayBuffer> {
   const bytes = new Uint8Array(352 + samples.length), view = new DataView(bytes.buffer);
   view.setInt32(0, 348, true);
   view.setInt16(40, 3, true);
@@ -10,8 +10,8 @@ export function nifti(size: number[], affine: number[], samples: Uint8Array): Ui
     view.setFloat32(80 + 4 * axis, Math.hypot(affine[axis], affine[4 + axis], affine[8 + axis]), true);
   }
   for (let n = 4; n < 8; ++n) view.setInt16(40 + 2 * n, 1, true);
-  view.setInt16(70, 2, true);  // unsigned bytes
-  view.setInt16(72, 8, true);
+  view.setInt16(70, sampleBytes === 1 ? 2 : 512, true);  // unsigned
+  view.setInt16(72, 8 * sampleBytes, true);
   view.setFloat32(76, 1, true);
   view.setFloat32(108, 352, true);
   view.setFloat32(112, 1, true);
@@ -24,9 +24,12 @@ export function nifti(size: number[], affine: number[], samples: Uint8Array): Ui
   return bytes;
 }
 
+/** The labels of exampleHead(true), as adaptiso-bem takes them. */
+export const kExampleTissues = "brain=1 skull=2 scalp=3";
+
 /** A head of 2 mm voxels: skin, skull, CSF, a folded brain with ventricles, eyes, nose, ears, a neck, and noise
- * that is the same every time. */
-export function exampleHead(): Uint8Array<ArrayBuffer> {
+ * that is the same every time; or its tissues as labels. */
+export function exampleHead(asLabels = false): Uint8Array<ArrayBuffer> {
   const size = [84, 104, 92], samples = new Uint8Array(size[0] * size[1] * size[2]);
   let seed = 1;
   const noise = (): number => {
@@ -45,6 +48,10 @@ export function exampleHead(): Uint8Array<ArrayBuffer> {
         const folds = 2.4 * Math.sin(x / 4.5 + Math.sin(z / 7)) * Math.sin(y / 5.5) * Math.sin(z / 5 + Math.cos(x / 9));
         const brain = depthIn(x, y, z - 6, 61, 79, 68) + folds - Math.max(0, 3.5 - Math.abs(x)) * (z > 20 ? 1.5 : 0);
         const ventricle = depthIn(Math.abs(x) - 9, y + 4, z - 12, 6, 26, 9);
+        if (asLabels) {
+          samples[n] = skin > 11 ? 1 : skin > 5 ? 2 : Math.max(skin, nose, ear, neck) > 0 ? 3 : 0;
+          continue;
+        }
         let value = 6;
         if (Math.max(skin, nose, ear, neck) > 0) value = 150;
         if (skin > 5) value = 35;

@@ -54,6 +54,14 @@ export interface ImageFacts {
   shownSize: number[];
   shownAffine: number[];
   previewStep: number;
+  /** Of a label map, ascending: the n-th is shade n + 1, two bytes each. Empty: it has none, or too many to colour. */
+  labels: number[];
+  labelColors: [number, number, number][];
+}
+/** adaptisoListSeries()'s answer. */
+export interface Series {
+  number: number; modality: string; description: string; size: number[]; volumes: number; spacingMm: number[];
+  orientation: string; localizer: boolean; details: [string, string][]; fault: string;
 }
 /** Scanner RAS mm; normals of any length. */
 export interface Shape { points: Float32Array; triangles: Uint32Array; normals: Float32Array; values: Float32Array | null }
@@ -63,4 +71,4 @@ export interface OpenedMesh { shape: Shape; format: string; frame: string | null
 export type Reply =
   | { id: number; kind: "progress"; text: string }
   | { id: number; kind: "done"; result: RunResult | OpenedImage | OpenedMesh | Shape | number }
-  | { id: number; kind: "refused"; line: string; exitCode: number };
+  | { id: number; kind: "refused"; line: string; exitCode: number; series: Series[] };

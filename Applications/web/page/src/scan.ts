@@ -1,9 +1,9 @@
 /** The image that the tabs Mesh, Head model and Labels work on. */
 import { byId, formatBytes, make } from "./dom";
-import { asInput } from "./drop";
+import { asInput, kSlices } from "./drop";
 import { Cancelled, type Looker, Refused } from "./engine";
 import { nifti } from "./nifti";
-import type { ImageFacts, InputFile } from "./protocol";
+import type { ImageFacts, InputFile, Series } from "./protocol";
 import { kMostMemory, kProgramBytes, type Page, type Task, tooLarge } from "./task";
 
 /** Size after unpacking, bytes: gzip ends with the length of its last member, modulo 4 GiB. */
@@ -27,7 +27,10 @@ export class Scan {
 
   constructor(private readonly page: Page) { this.looker = page.engine.looker(); }
 
-  /** Calls `listener` when an image is open, and when another begins to be opened (without `facts`). */
+  /** An image is being read; the one before is there until then. */
+  isReading = false;
+
+  /** Calls `listener` when an image begins to be read (`isReading`), and when it is open or was refused. */
   onChange(listener: () => void): void { this.listeners.push(listener); }
 
   /** Arguments of every program that reads it. */
@@ -38,12 +41,10 @@ export class Scan {
 
   /** Opens what was given on a tab; where it is refused, the tab says why and offers what the line lets choose from. */
   async take(task: Task, given: InputFile[], isLabels = false, volumeIndex = -1, series = ""): Promise<boolean> {
-    task.cancel();
-    task.part(".result").hidden = true;
     task.refuse("");
-    this.volumeIndex = volumeIndex;
-    this.series = series;
-    const line = await this.open(given, isLabels), choices: HTMLElement[] = [];
+    const refused = await this.open(task, given, { isLabels, volumeIndex, series }), choices: HTMLElement[] = [];
+    if (refused === undefined) return this.facts !== undefined;
+    const { line } = refused;
     const add = (label: string, index: () => number, number: string): void => {
       const button = make("button", { type: "button" }, label);
       button.addEventListener("click", () => this.take(task, given, isLabels, index(), number));
@@ -54,41 +55,56 @@ export class Scan {
       const box = make("input", { type: "number", min: "0", max: volumes[1], value: "0" });
       choices.push(make("label", {}, "Volume ", box));
       add("Open it", () => Number(box.value), "");
-    } else if (line.includes("--series")) {
-      for (const [, number, text] of line.matchAll(/[(;] ?(\d+): (.*?)(?=; \d+: |\); )/g)) add(`${number}: ${text}`, () => -1, number);
+    } else if (refused.series.length > 0) {
+      choices.push(make("p", {}, make("strong", {}, `${refused.series.length} series: choose one`)));
+      for (const each of refused.series.filter(({ fault }) => fault === "")) add(rowOf(each), () => -1, String(each.number));
+      choices.push(make("details", {}, make("summary", {}, "More of each"),
+        make("ul", {}, ...refused.series.map((each) => make("li", {}, moreOf(each))))));
+      task.refuse("", choices);  // it is a question
+      return false;
     }
     task.refuse(line, choices);
-    return line === "" && this.facts !== undefined;
+    return false;
   }
 
-  /** \return the line that says why not; empty: it is open, or another was opened meanwhile */
-  private async open(given: InputFile[], isLabels: boolean): Promise<string> {
-    const { files, path } = asInput(given);
-    this.facts = undefined;
-    this.files = files;
-    this.path = path;
+  /** \return why not; nothing: it is open, or another was asked for meanwhile. A refused one changes nothing */
+  private async open(task: Task, given: InputFile[], { isLabels, volumeIndex, series }: { isLabels: boolean; volumeIndex: number;
+      series: string }): Promise<Refused | undefined> {
+    const turn = ++this.turn;
+    this.isReading = true;
     for (const listener of this.listeners) listener();
     byId("facts").textContent = "reading ...";
     byId("facts-box").hidden = false;
-    byId("scan-warnings").replaceChildren();
+    let path = "";
     try {
+      const input = asInput(given), { files } = input;
+      path = input.path;
       const bytes = (await Promise.all(files.map(unpackedBytes))).reduce((sum, each) => sum + each, 0);
       const need = kProgramBytes + bytes;
       if (need > kMostMemory) throw new Refused(tooLarge(path, need, "adaptiso-mesh, or adaptiso-giant"), 3);
-      const { facts, shades } = await this.looker.open({ files, path, volumeIndex: this.volumeIndex, series: this.series, isLabels });
-      this.facts = facts;
+      const { facts, shades } = await this.looker.open({ files, path, volumeIndex, series, isLabels });
+      task.cancel();
+      task.part(".result").hidden = true;
+      Object.assign(this, { facts, files, path, volumeIndex, series, isReading: false });
       this.tell(facts);
       for (const listener of this.listeners) listener();
       const view = await this.page.view();
-      await view?.showImage(nifti(facts.shownSize, facts.shownAffine, shades), isLabels);
+      await view?.showImage(nifti(facts.shownSize, facts.shownAffine, shades, facts.labels.length > 0 ? 2 : 1), facts.labelColors);
       document.body.dataset.scan = path;
-      return "";
+      return undefined;
     } catch (error) {
-      if (error instanceof Cancelled) return "";
-      byId("facts-box").hidden = true;
-      return error instanceof Refused ? error.line : String(error);
+      if (turn !== this.turn) return undefined;
+      this.isReading = false;
+      if (this.facts !== undefined) this.tell(this.facts);
+      byId("facts-box").hidden = this.facts === undefined;
+      for (const listener of this.listeners) listener();
+      if (error instanceof Cancelled) return undefined;
+      if (!(error instanceof Refused)) return new Refused((error as Error).message, 3);
+      const named = path === kSlices ? error.line.replace(`${kSlices}:`, `${given.length} files:`) : error.line;
+      return new Refused(named, error.exitCode, error.series);
     }
   }
+  private turn = 0;
 
   private tell(facts: ImageFacts): void {
     const spacing = facts.geometry.spacingMm.map((mm) => Number(mm.toPrecision(4)));
@@ -97,6 +113,18 @@ export class Scan {
       + `${Number(facts.minimum.toPrecision(6))} to ${Number(facts.maximum.toPrecision(6))}`;
     byId("scan-warnings").replaceChildren(...facts.warnings.map((text) => make("li", {}, text)));
   }
+}
+
+/** "2: MR, T1 MPRAGE; 176 slices, 1 × 1 × 1 mm" */
+function rowOf({ number, modality, description, size, volumes, spacingMm }: Series): string {
+  const mm = spacingMm.map((each) => each > 0 ? String(Number(each.toPrecision(3))) : "?").join(" × ");
+  const title = [modality, description].filter((text) => text !== "").join(", ");
+  return `${number}: ${title === "" ? "" : `${title}; `}${volumes > 1 ? `${volumes} volumes of ` : ""}${size[2]} slices, ${mm} mm`;
+}
+
+function moreOf({ number, size, orientation, localizer, details, fault }: Series): string {
+  return [`${number}: ${size[0]} × ${size[1]} voxels`, orientation, ...(localizer ? ["localizer"] : []),
+    ...details.map(([key, value]) => `${key} ${value}`), ...(fault === "" ? [] : [`can't be read: ${fault}`])].join(", ");
 }
 
 /**

@@ -1,5 +1,5 @@
 /** The tabs Check, Simplify and Compare: of meshes that are there. */
-import { byId, formatCount, make } from "./dom";
+import { byId, formatCount, make, showGiven } from "./dom";
 import { stemOf, takeFiles } from "./drop";
 import { type Looker, Refused } from "./engine";
 import type { InputFile, OpenedMesh, Shape } from "./protocol";
@@ -25,12 +25,20 @@ class Meshes {
     takeFiles(byId(`${id}-drop`), async (given) => {
       this.files.push(...given);
       this.files.splice(0, Math.max(0, this.files.length - most));
-      byId(`${id}-names`).textContent = this.files.map((file) => file.path).join(", ");
-      this.task.part(".result").hidden = true;
-      this.task.refuse("");
-      await this.show(this.apart);
+      await this.changed();
     });
     byId(`${id}-form`).addEventListener("submit", (event) => { event.preventDefault(); void make(); });
+  }
+
+  private async changed(): Promise<void> {
+    showGiven(byId(`${this.task.id}-names`), this.files.map((file) => file.path), (n) => {
+      this.files.splice(n, 1);
+      void this.changed();
+    });
+    this.task.part(".result").hidden = true;
+    this.task.refuse("");
+    this.shown = [];
+    await this.show(this.apart);
   }
 
   /** The files at their own names; in folders 1, 2, ... where two have the same. */
@@ -60,8 +68,8 @@ class Meshes {
       }
     }
     const view = await this.page.view();
-    if (surfaces.length === 0) return [];
     await view?.clear();
+    if (surfaces.length === 0) return [];
     await view?.showSurfaces(surfaces);
     document.body.dataset.shown = files.map((file) => file.path).join(" ");
     this.shown = surfaces;
@@ -70,8 +78,30 @@ class Meshes {
 }
 
 interface CheckReport { surfaces: { file: string; error: string | null; passed: boolean; triangles: number; failed: string[];
-  checks: { name: string; required: boolean; outcome: string; finding: string }[];
-  examples: { defect: string; vertices: number[]; pointMm: number[] | null }[] }[] }
+  checks: { name: string; text: string; required: boolean; outcome: string; finding: string }[];
+  examples: { defect: string; triangle: number | null; vertices: number[]; pointMm: number[] | null }[] }[] }
+
+type Example = CheckReport["surfaces"][number]["examples"][number];
+
+/** "non manifold vertex" of "nonManifoldVertex" */
+const wordsOf = (key: string): string => key.replace(/[A-Z]/g, (letter) => ` ${letter.toLowerCase()}`);
+
+/** The first few of each kind. */
+function fewOfEach(examples: Example[]): Example[] {
+  const kMost = 4, counts = new Map<string, number>();
+  return examples.filter(({ defect }) => {
+    counts.set(defect, (counts.get(defect) ?? 0) + 1);
+    return (counts.get(defect) ?? 0) <= kMost;
+  });
+}
+
+/** Where it is in the shape that is shown, whatever the file's frame is. */
+function placeOf({ triangle, vertices, pointMm }: Example, shape: Shape | undefined): number[] | null {
+  if (shape === undefined) return pointMm;
+  const corners = vertices?.length > 0 ? [vertices[0]] : triangle === null ? [] : Array.from(shape.triangles.subarray(3 * triangle, 3 * triangle + 3));
+  if (corners.length === 0 || corners.some((corner) => 3 * corner >= shape.points.length)) return pointMm;
+  return [0, 1, 2].map((axis) => corners.reduce((sum, corner) => sum + shape.points[3 * corner + axis], 0) / corners.length);
+}
 
 export class CheckTab {
   private readonly meshes: Meshes;
@@ -94,22 +124,20 @@ export class CheckTab {
       const list = make("ul", { className: "checks" });
       for (const check of surface.checks ?? []) {
         list.append(make("li", { className: check.outcome },
-          `${check.outcome === "passed" ? "✓" : check.outcome === "failed" ? "✗" : "?"} ${check.name}`
+          `${check.outcome === "passed" ? "✓" : check.outcome === "failed" ? "✗" : "?"} ${check.text}`
           + `${check.finding === "" ? "" : `: ${check.finding}`}`));
       }
-      const places = make("p", { className: "saves" });
+      const places = make("p", { className: "places" });
       const shape = shown.find(({ name }) => name === files[n].path)?.shape;
-      for (const example of (surface.examples ?? []).slice(0, 12)) {
-        // a vertex lies right whatever the file's frame is
-        const vertex = example.vertices?.[0], point = shape && vertex !== undefined && 3 * vertex < shape.points.length
-          ? Array.from(shape.points.subarray(3 * vertex, 3 * vertex + 3)) : example.pointMm;
+      for (const example of fewOfEach(surface.examples ?? [])) {
+        const point = placeOf(example, shape);
         if (point === null || !point.every(Number.isFinite)) continue;
-        const button = make("button", { type: "button" }, `Show ${example.defect}`);
+        const button = make("button", { type: "button" }, `Show ${wordsOf(example.defect)}`);
         button.addEventListener("click", async () => (await page.view())?.moveTo(point));
         places.append(button);
       }
       return make("details", { open: !surface.passed }, make("summary", {}, `${files[n].path}: ${surface.error ?? (surface.passed
-        ? "passes" : `fails ${surface.failed.join(", ")}`)}`), list, places);
+        ? "passes" : `fails ${surface.failed.map((key) => surface.checks.find(({ name }) => name === key)?.text ?? key).join(", ")}`)}`), list, places);
     });
     await task.show(title, run, done, [], details);
     const file = done.files.find((each) => each.path === kReport);
@@ -135,7 +163,7 @@ export class SimplifyTab {
     const report = reportOf(done) as { input: { triangles: number }; output: { triangles: number; errorBoundMm: number | null } };
     const [result] = outputsOf(done);
     await task.show(`${formatCount(report.output.triangles)} triangles of ${formatCount(report.input.triangles)}`
-      + (report.output.errorBoundMm === null ? "" : `; no point farther than ${Number(report.output.errorBoundMm.toPrecision(3))} mm (proved)`),
+      + (report.output.errorBoundMm === null ? "" : `; no point farther than ${Number(report.output.errorBoundMm.toPrecision(3))} mm from ${file.path} (proved)`),
       run, done, [result]);
     task.addSave(`Save ${result.path}`, result.path, () => result.bytes, true);
     task.addGlb(`${stemOf(result.path)}.glb`, await this.meshes.show([{ path: result.path, data: result.bytes }]));

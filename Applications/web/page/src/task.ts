@@ -24,6 +24,20 @@ export interface Run {
   shownArgs?: string[];
 }
 
+/** Options that the page has fields or choices for. */
+const kFields = new Set(["iso", "max-error", "triangles", "smooth", "largest", "fill-cavities", "coordinates", "volume-index", "series",
+  "list-series", "brain-mask", "tissue", "preset", "layers", "vertices", "fif", "gifti", "labels", "names", "format", "file-names", "nested",
+  "profile", "t1", "ct", "output"]);
+
+/** What to do about a program's line in a page: options that it has not, and commands of a shell. */
+function hintOf(line: string): string {
+  const missing = [...new Set([...line.matchAll(/--([a-z][a-z0-9-]+)/g)].map(([, name]) => name))].filter((name) => !kFields.has(name));
+  const program = /^adaptiso-(\w+):/.exec(line)?.[1];
+  return [...(missing.length === 0 || program === undefined ? []
+    : [`Not possible in this page: npx adaptiso ${program} ... ${missing.map((name) => `--${name}`).join(" ")}`]),
+  ...(/\b(unzip|gunzip|tar) /.test(line) ? ["Unpack it first (Windows: right-click, Extract All), then give the folder."] : [])].join(" ");
+}
+
 /** A step of a run as programs name it, and how far it is: "extract 42 %". */
 function parseProgress(text: string): { stage: string; percent: number | undefined } {
   const found = /^(.*?) (?:(\d+) %|\.\.\.)$/.exec(text);
@@ -53,7 +67,8 @@ export class Task {
     const box = this.part(".refusal");
     box.textContent = line;
     box.hidden = line === "";
-    this.part(".choices").replaceChildren(...choices);
+    const hint = hintOf(line);
+    this.part(".choices").replaceChildren(...choices, ...(hint === "" || choices.length > 0 ? [] : [make("p", { className: "hint" }, hint)]));
   }
 
   /** \return nothing where it was cancelled or refused, which the tab then says */
@@ -136,7 +151,7 @@ export class Task {
   addSave(label: string, name: string, data: () => Blob | Uint8Array, isMain = false): void {
     const button = make("button", { type: "button", className: isMain ? "main" : "" }, label);
     button.addEventListener("click", () => save(name, data()));
-    let row = this.part(".result").querySelector(".saves");
+    let row = this.part(".result").querySelector(":scope > .saves");
     if (row === null) {
       row = make("p", { className: "saves" });
       this.part(".result").querySelector(".verdict")?.after(row);

@@ -4,7 +4,7 @@
  */
 import type { Niivue } from "@niivue/niivue";
 import { swatch } from "./dom";
-import { type Outline, type Painted, Painter, type Surface } from "./painter";
+import { type Color, type Outline, type Painted, Painter, type Surface } from "./painter";
 import type { Shape } from "./protocol";
 
 interface Drawn extends Painted { cuts: { at: number; outline: Outline }[] }
@@ -29,6 +29,13 @@ function cutOf({ points, triangles }: Shape, { normal, at }: Plane): Float32Arra
     }
   }
   return Float32Array.from(found);
+}
+
+/** Nothing where no label is. */
+function labelColormap(colors: Color[]): never {
+  const channel = (at: number): number[] => [0, ...colors.map((color) => color[at])];
+  return { R: channel(0), G: channel(1), B: channel(2), A: [0, ...colors.map(() => 255)],
+    I: [0, ...colors.map((_, n) => n + 1)], labels: [] } as never;
 }
 
 export class View {
@@ -73,13 +80,16 @@ export class View {
     return done;
   }
 
-  showImage(file: Uint8Array<ArrayBuffer>, isLabels: boolean): Promise<void> {
+  /** \param labelColors  of a label map: of its n-th label; empty: an image */
+  showImage(file: Uint8Array<ArrayBuffer>, labelColors: Color[]): Promise<void> {
     return this.next(async () => {
       this.clearMeshes();
       for (const volume of [...this.nv.volumes]) this.nv.removeVolume(volume);
       const blob = new File([file], "image.nii");
       const volume = await this.library.NVImage.loadFromFile({ file: blob, name: "image.nii",
-        colormap: isLabels ? "actc" : "gray", cal_min: 0, cal_max: 255 } as never);
+        colormap: "gray", cal_min: 0, cal_max: 255 } as never);
+      if (labelColors.length > 0) volume.setColormapLabel(labelColormap(labelColors));
+      this.nv.setInterpolation(labelColors.length > 0);  // nearest: no label lies between two others
       this.nv.addVolume(volume);
       this.moveTo([0, 1, 2].map((axis) => (this.nv.frac2mm([0.5, 0.5, 0.5] as never) as unknown as number[])[axis]));
     });
@@ -93,6 +103,14 @@ export class View {
       this.caption.replaceChildren(...surfaces.length > 5 ? [] : surfaces.flatMap(({ name, color, colors }) => [
         ...(colors ? [] : [swatch(color)]), `${name} `]));
       this.nv.drawScene();
+    });
+  }
+
+  /** Of the label map that is shown: the colour of its n-th label. */
+  setLabelColors(colors: Color[]): Promise<void> {
+    return this.next(async () => {
+      this.nv.volumes[0]?.setColormapLabel(labelColormap(colors));
+      this.nv.updateGLVolume();
     });
   }
 

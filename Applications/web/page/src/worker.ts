@@ -3,7 +3,7 @@
  * at an image. The glue that Emscripten made stands above this code and defines createAdaptiso().
  */
 import type { Message, OpenedImage, OpenedMesh, OpenRequest, OutputFile, Reply, RunRequest, RunResult,
-  Shape, InputFile } from "./protocol";
+  Series, Shape, InputFile } from "./protocol";
 
 interface FileSystem {
   mkdirTree(path: string): void;
@@ -91,14 +91,25 @@ const answerOf = (instance: Instance): string => instance.ccall("adaptisoAnswer"
 
 /** \throws Refusal */
 class Refusal extends Error {
-  constructor(readonly line: string, readonly exitCode: number) { super(line); }
+  constructor(readonly line: string, readonly exitCode: number, readonly series: Series[] = []) { super(line); }
 }
 
-function call(instance: Instance, name: string, types: string[], args: unknown[]): Record<string, unknown> {
+function call<T = Record<string, unknown>>(instance: Instance, name: string, types: string[], args: unknown[]): T {
   const exitCode = instance.ccall(name, "number", types, args) as number;
   const answer = answerOf(instance);
   if (exitCode !== 0) throw new Refusal(answer, exitCode);
   return JSON.parse(answer);
+}
+
+/** Opens the image; where it has to be chosen from several series, the refusal has them. */
+function openImage(instance: Instance, request: OpenRequest): Record<string, unknown> {
+  try {
+    return call(instance, "adaptisoOpenImage", ["string", "number", "string", "number"],
+      [request.path, request.volumeIndex, request.series, request.isLabels ? 1 : 0]);
+  } catch (error) {
+    if (!(error instanceof Refusal) || !error.line.includes("--list-series")) throw error;
+    throw new Refusal(error.line, error.exitCode, call<Series[]>(instance, "adaptisoListSeries", ["string"], [request.path]));
+  }
 }
 
 const address = (instance: Instance, name: string): number =>
@@ -142,8 +153,7 @@ async function open(request: OpenRequest): Promise<OpenedImage> {
   const instance = await makeInstance({ print: () => {}, printErr: () => {} });
   looker = Promise.resolve(instance);
   for (const file of request.files) await put(instance.FS, file);
-  const facts = call(instance, "adaptisoOpenImage", ["string", "number", "string", "number"],
-    [request.path, request.volumeIndex, request.series, request.isLabels ? 1 : 0]);
+  const facts = openImage(instance, request);
   for (const file of request.files) instance.FS.unlink(file.path);
   const begin = address(instance, "adaptisoShades"), count = address(instance, "adaptisoShadeCount");
   return { facts: facts as unknown as OpenedImage["facts"],
@@ -181,7 +191,7 @@ self.addEventListener("message", async (event: MessageEvent<Message>) => {
     await handle(id, request);
   } catch (error) {
     const isRefusal = error instanceof Refusal;
-    reply({ id, kind: "refused", exitCode: isRefusal ? error.exitCode : 4,
+    reply({ id, kind: "refused", exitCode: isRefusal ? error.exitCode : 4, series: isRefusal ? error.series : [],
       line: isRefusal ? error.line : `the page failed: ${error instanceof Error ? error.message : error}` });
   }
 });

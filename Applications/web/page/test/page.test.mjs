@@ -4,7 +4,7 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
-import { gzipSync } from "node:zlib";
+import { gunzipSync, gzipSync } from "node:zlib";
 import validator from "gltf-validator";
 import { arrived, balls, dicomSlice, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved,
   textOf, writeNifti } from "./support.mjs";
@@ -29,6 +29,16 @@ describe("the file", () => {
     const policy = /Content-Security-Policy" content="([^"]*)"/.exec(text)[1];
     assert.match(policy, /default-src 'none'/);
     assert.match(policy, /connect-src data: blob:(;|$)/);
+    assert.match(policy, /webrtc 'block'/);
+  });
+
+  it("lets its own scripts run alone, by their checksums", () => {
+    const text = readFileSync(kPage, "utf8");
+    const allowed = /script-src ([^;]*);/.exec(text)[1].split(" ");
+    const niivue = gunzipSync(Buffer.from(/<script type="text\/plain" id="niivue">([^<]*)</.exec(text)[1], "base64"));
+    const scripts = [/<script>([\s\S]*)<\/script>\n<\/body>/.exec(text)[1], niivue];
+    assert.deepEqual(allowed, [...scripts.map((script) => `'sha256-${createHash("sha256").update(script).digest("base64")}'`), "'wasm-unsafe-eval'"]);
+    assert.doesNotMatch(text.replace(/<script[\s\S]*<\/script>/, ""), /<[a-z][^>]*\son[a-z]+=/);
   });
 });
 
@@ -50,9 +60,25 @@ for (const browserName of kBrowsers) {
     it("shows a result of the example by one click", async () => {
       await press(page, "#example");
       assert.equal(await ended(page, "mesh"), "");
-      assert.match(await textOf(page, "#mesh .verdict"), /^[\d,]+ triangles; no point farther than 0\.(3|29\d) mm \(proved\); closed; 0 pairs cross; \d+ pieces?, \d+ cavit(y|ies)$/);
+      assert.match(await textOf(page, "#mesh .verdict"), /^[\d,]+ triangles; no point farther than 0\.(3|29\d) mm from the isosurface at \d+(\.\d+)? of the scan \(proved\); closed; 0 pairs cross; \d+ pieces?, \d+ cavit(y|ies)$/);
       await page.waitForFunction(() => document.body.dataset.shown === "example.stl", { timeout: 60_000 });
       await picture(page, `${browserName}-example`);
+    });
+
+    it("runs no script that is put in", async () => {
+      const wasRun = await page.evaluate(async () => {
+        const script = document.createElement("script");
+        script.textContent = "globalThis.wasRun = true";
+        document.body.append(script);
+        const image = document.createElement("img");
+        image.setAttribute("onerror", "globalThis.wasRun = true");
+        image.src = "data:,";
+        await new Promise((done) => setTimeout(done, 300));
+        script.remove();
+        return globalThis.wasRun ?? false;
+      });
+      assert.equal(wasRun, false);
+      open.errors.splice(0);  // what the browser says of it
     });
 
     it("opens gzip of several members, the last empty, as BGZF is", async () => {
@@ -127,8 +153,44 @@ for (const browserName of kBrowsers) {
       assert.ok(command.includes("--triangles") && command.includes("--smooth") && command.includes("--largest"));
       assert.equal(native(folder, ...command).status, 0);
       assert.deepEqual(bytes, readFileSync(join(folder, "balls.ply")));
+      assert.match(await textOf(page, "#mesh .verdict"), /mm from the isosurface at [\d.]+ of the scan smoothed by 0\.8 mm \(proved\)/);
       for (const id of ["#by-distance", "#largest", "#fill"]) await press(page, id);
       await page.$eval("#smooth", (input) => { input.value = ""; });
+    });
+
+    it("keeps scan, form and result where another file is refused", async () => {
+      writeFileSync(join(folder, "notes.txt"), "no scan");
+      const facts = await textOf(page, "#facts"), verdict = await textOf(page, "#mesh .verdict");
+      await give(page, "#scan-files", join(folder, "notes.txt"));
+      await page.waitForFunction(() => !document.querySelector("#mesh .refusal").hidden, { timeout: 60_000 });
+      assert.equal(await textOf(page, "#facts"), facts);
+      assert.equal(await textOf(page, "#mesh .verdict"), verdict);
+      assert.ok(await page.$eval("#mesh .saves .main", (button) => button.checkVisibility()));
+      assert.equal(await page.$eval("#mesh-options", (set) => set.disabled), false);
+      await press(page, "#mesh .go");  // of the scan that is still there
+      assert.equal(await ended(page, "mesh"), "");
+    });
+
+    it("says of two scans that they are two", async () => {
+      writeNifti(join(folder, "other.nii"), [8, 8, 8], (i) => i);
+      await give(page, "#scan-files", join(folder, "balls.nii"), join(folder, "other.nii"));
+      await page.waitForFunction(() => !document.querySelector("#mesh .refusal").hidden, { timeout: 60_000 });
+      assert.match(await textOf(page, "#mesh .refusal"), /^balls\.nii and other\.nii are 2 scans: give one here/);
+      // a sidecar is none
+      writeFileSync(join(folder, "balls.json"), "{}");
+      await give(page, "#scan-files", join(folder, "balls.nii"), join(folder, "balls.json"));
+      await page.waitForFunction(() => document.querySelector("#mesh .refusal").hidden && document.body.dataset.scan === "balls.nii", { timeout: 60_000 });
+    });
+
+    it("says what to do where a line names an option that the page has not", async () => {
+      const slices = [];
+      for (const n of [0, 1, 2, 5, 6]) {
+        slices.push(join(folder, `uneven-${n}.dcm`));
+        writeFileSync(slices.at(-1), dicomSlice(3, n, 6));
+      }
+      await give(page, "#scan-files", ...slices);
+      await page.waitForFunction(() => /--resample-slices/.test(document.querySelector("#mesh .refusal").textContent), { timeout: 60_000 });
+      assert.match(await textOf(page, "#mesh .choices"), /^Not possible in this page: npx adaptiso mesh \.\.\. --resample-slices$/);
     });
 
     it("refuses what the programs refuse, with the same line", async () => {
@@ -171,6 +233,9 @@ for (const browserName of kBrowsers) {
       await give(page, "#scan-files", ...slices);
       await page.waitForSelector("#mesh .choices button", { timeout: 60_000 });
       assert.equal((await page.$$("#mesh .choices button")).length, 2);
+      assert.equal(await page.$eval("#mesh .refusal", (box) => box.hidden), true);  // it is a question
+      assert.deepEqual(await page.$$eval("#mesh .choices button", (buttons) => buttons.map(({ textContent }) => textContent)),
+        ["1: MR, series 1; 6 slices, 1 × 1 × 1 mm", "2: MR, series 2; 9 slices, 1 × 1 × 1 mm"]);
       await press(page, "#mesh .choices button:nth-of-type(2)");
       await isOpen("9 × 9 × 9 voxels");
     });
@@ -284,6 +349,23 @@ for (const browserName of kBrowsers) {
       const command = (await textOf(page, "#labels .copy:nth-of-type(2) code")).split(" ");
       assert.equal(native(folder, ...command).status, 0);
       assert.ok(files.size > 4);
+      // slice, outline, list and 3-D in one colour
+      await page.waitForFunction(() => document.body.dataset.shown === "regions", { timeout: 60_000 });
+      const png = await (await page.$("#gl")).screenshot({ encoding: "base64" });
+      const counts = await page.evaluate(async (data) => {
+        const image = Object.assign(new Image(), { src: `data:image/png;base64,${data}` });
+        await image.decode();
+        const context = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height }).getContext("2d");
+        context.drawImage(image, 0, 0);
+        const pixels = context.getImageData(0, 0, image.width, image.height).data;
+        return [...document.querySelectorAll("#labels .regions .swatch")].map((spot) => {
+          const color = spot.style.background.match(/\d+/g).map(Number);
+          let count = 0;
+          for (let n = 0; n < pixels.length; n += 4) count += [0, 1, 2].every((at) => Math.abs(pixels[n + at] - color[at]) <= 2);
+          return count;
+        });
+      }, png);
+      assert.ok(counts.length === 3 && counts.every((count) => count > 1000), String(counts));
       for (const [name, bytes] of files) {
         if (!name.endsWith("report.json")) assert.deepEqual(bytes, readFileSync(join(folder, name)), name);
       }
@@ -295,8 +377,47 @@ for (const browserName of kBrowsers) {
       await press(page, "#head-example");
       assert.equal(await ended(page, "head", 600_000), "");
       assert.match(await textOf(page, "#head .verdict"), /^3 surfaces of ([\d,]+), \1, \1 vertices, closed, each inside the next; 0 pairs cross$/);
+      assert.deepEqual(await page.$$eval("#head .notes li", (notes) => notes.map(({ textContent }) => textContent).filter((note) => /cut/.test(note))), []);
       await page.waitForFunction(() => document.body.dataset.shown === "model", { timeout: 60_000 });
       await picture(page, `${browserName}-head-example`);
+    });
+
+    it("takes a mask back, and drops it with its scan", async () => {
+      await press(page, "#tab-head");
+      const mask = () => textOf(page, "#mask-name");
+      await give(page, "#mask-file", join(folder, "balls.nii"));
+      await page.waitForFunction(() => document.querySelector("#mask-name").textContent.startsWith("balls.nii"));
+      await press(page, "#mask-name .remove");
+      assert.equal(await mask(), "");
+      await give(page, "#mask-file", join(folder, "balls.nii"));
+      await give(page, "#head-files", join(folder, "seg.nii"));
+      await page.waitForFunction(() => document.querySelector("#head-scan").textContent === "seg.nii", { timeout: 60_000 });
+      assert.equal(await mask(), "");
+      await press(page, "#tab-labels");
+      writeFileSync(join(folder, "names.tsv"), "index\tname\n1\tone\n");
+      await give(page, "#names-file", join(folder, "names.tsv"));
+      await page.waitForFunction(() => document.querySelector("#names-name").textContent.startsWith("names.tsv"));
+      await press(page, "#names-name .remove");
+      assert.equal(await textOf(page, "#names-name"), "");
+    });
+
+    it("shows where a mesh crosses itself, in the program's words", async () => {
+      await press(page, "#tab-check");
+      const cube = (x) => [0, 1, 2, 3, 4, 5, 6, 7].map((n) => `v ${x + 10 * (n & 1)} ${5 * (n >> 1 & 1) + x / 2} ${10 * (n >> 2)}`);
+      const sides = [[1, 3, 4], [1, 4, 2], [5, 6, 8], [5, 8, 7], [1, 2, 6], [1, 6, 5], [3, 7, 8], [3, 8, 4], [1, 5, 7], [1, 7, 3], [2, 4, 8], [2, 8, 6]];
+      writeFileSync(join(folder, "crossing.obj"), [...cube(0), ...cube(4),
+        ...[0, 8].flatMap((first) => sides.map((side) => `f ${side.map((n) => n + first).join(" ")}`))].join("\n"));
+      await give(page, "#check-files", join(folder, "crossing.obj"));
+      await page.waitForFunction(() => document.querySelector("#check-names").textContent.startsWith("crossing.obj"));
+      await press(page, "#check .go");
+      await page.waitForFunction(() => document.querySelector("#check .verdict") !== null, { timeout: 60_000 });
+      const text = await textOf(page, "#check .checks");
+      for (const words of ["no self-intersection: ", "vertices manifold", "genus 0", "smallest angle"]) assert.ok(text.includes(words), words);
+      assert.match(await textOf(page, "#check .places"), /Show crossing/);
+      await press(page, "#check .places button");
+      await picture(page, `${browserName}-crossing`);
+      await press(page, "#check-names .remove");
+      assert.equal(await textOf(page, "#check-names"), "");
     });
 
     it("checks meshes as the program does", async () => {
@@ -307,6 +428,7 @@ for (const browserName of kBrowsers) {
       await ended(page, "check");
       // angles come from another C library: equal to 12 digits
       const read = (text) => JSON.parse(text, (_, value) => typeof value === "number" ? Number(value.toPrecision(12)) : value).surfaces;
+      assert.ok(await page.$eval("#check .saves .main", (button) => button.checkVisibility() && button.closest("details") === null));
       const report = read((await saved(page, open.downloads, "#check .saves .main", "check.json")).toString());
       native(folder, "adaptiso-check", "balls.ply", "--json", "native.json");
       assert.deepEqual(report, read(readFileSync(join(folder, "native.json"))));

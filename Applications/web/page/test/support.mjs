@@ -145,6 +145,7 @@ export function dicomSlice(series, n, size) {
   length.writeUInt32LE(meta.length);
   return Buffer.concat([Buffer.alloc(128), Buffer.from("DICM"), element(2, 0, "UL", length), meta,
     element(8, 0x16, "UI", kMr), element(8, 0x18, "UI", uid), element(8, 0x60, "CS", "MR"),
+    element(8, 0x103e, "LO", `series ${series}`),
     element(0x18, 0x50, "DS", "1"), element(0x20, 0xd, "UI", "1.2.3"), element(0x20, 0xe, "UI", `1.2.3.${series}`),
     element(0x20, 0x11, "IS", String(series)), element(0x20, 0x13, "IS", String(n + 1)),
     element(0x20, 0x32, "DS", `0\\0\\${n}`), element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"), element(0x20, 0x52, "UI", "1.2.3.9"),
