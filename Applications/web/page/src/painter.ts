@@ -34,7 +34,8 @@ void main() {
   vec3 n = normalize(vNormal + vec3(0.0, 0.0, 1e-9));
   float side = abs(dot(n, normalize(vec3(-0.35, 0.45, -0.9)))), shine = pow(abs(dot(n, normalize(vec3(-0.2, 0.3, -1.0)))), 24.0);
   vec3 base = gl_FrontFacing ? vColor : vec3(0.84, 0.27, 0.25);
-  color = vec4(base * (0.25 + 0.72 * side) + 0.12 * shine, opacity);
+  float dark = opacity < 0.99 ? 0.75 : 0.25;  // what is seen through keeps its colour
+  color = vec4(base * mix(dark, 0.97, side) + 0.12 * shine, opacity);
 }`;
 
 /** A segment as a rectangle of the tile's plane. Noise has 100,000 of them, over which a 2-D canvas sits a minute. */
