@@ -254,7 +254,7 @@ TEST(DicomFolder, WithoutImagesIsRefused) {
     expectRefusal(folder.path(), "no DICOM file found");
     writeFile(folder / "about.txt", "pictures\n");
     writeFile(folder / "slice2.png", "\x89PNG\r\n\x1a\n" + std::string(60, ' '));
-    expectRefusal(folder.path(), "slice2.png is a PNG picture; convert pictures to NRRD");
+    expectRefusal(folder.path(), "file 2 (by name) is a PNG picture; convert pictures to NRRD");
     writeFile(folder / "slice.dcm", "");
     EXPECT_NE(refusalOf(folder.path()).find("a slice would be missing"), std::string::npos);
 }

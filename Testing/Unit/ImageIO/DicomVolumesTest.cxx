@@ -107,7 +107,7 @@ TEST(DicomVolumes, MagnitudeAndPhaseAreTwoSeriesOfTheList) {
         image.text(0x00080008, "CS", v ? "ORIGINAL\\PRIMARY\\P\\ND" : "ORIGINAL\\PRIMARY\\M\\ND");
     });
     const std::string message = refusalOf(folder.path());
-    EXPECT_NE(message.find("2: 3 slices"), std::string::npos) << message;
+    EXPECT_NE(message.find("2: CT, 3 slices"), std::string::npos) << message;
     const ReadVolume magnitude = readVolume(folder.path(), {.series = "1"});
     expectField(magnitude.volume, [](const Vec3& p) { return fieldOfVolume(p, 0); });
     const ReadVolume phase = readVolume(folder.path(), {.series = "2"});
@@ -403,8 +403,9 @@ TEST(DicomRepeats, ACopiedSliceIsRefusedAndNamed) {
     writeVolumes(folder, 1, [](DicomBuilder&, int, int) {});
     std::filesystem::copy_file(folder / "7", folder / "copy of 7");
     const std::string message = refusalOf(folder.path());
-    EXPECT_NE(message.find("1 of 3 positions; first: position 2, 7 and copy of 7"),
-              std::string::npos)
+    EXPECT_NE(
+        message.find("1 of 3 positions; first: position 2, file 3 (by name) and file 4 (by name)"),
+        std::string::npos)
         << message;
 }
 
