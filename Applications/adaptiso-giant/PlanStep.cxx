@@ -65,6 +65,10 @@ GiantPlan planOf(const GiantOptions& options) {
     GiantPlan plan;
     plan.version = programVersion();
     plan.input = fs::weakly_canonical(options.input);
+    if (!isUtf8(plan.input.native())) {
+        throw InvalidInput(baseName(options.input) +
+                           ": its path is not UTF-8, as the plan has to be; rename it");
+    }
     plan.read = options.read;
     plan.format = image.format();
     plan.geometry = image.geometry();

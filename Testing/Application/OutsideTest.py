@@ -343,6 +343,13 @@ class Terminals(OutsideTest):
             self.assertEqual(json.loads(done.stdout)["input"]["file"], name)
 
 
+    def test_a_giant_refuses_a_path_that_its_plan_cannot_hold(self):
+        name = os.fsdecode(b"g\xfc.nii")
+        shutil.copy(self.path("ball.nii"), self.path(name))
+        done = self.run_in(BAD_INPUT, program("giant"), "plan", "work", "--input", name, "--iso", 1)
+        self.assertIn("not UTF-8", done.stderr)
+
+
 class Leftovers(OutsideTest):
     def test_of_others_stay(self):
         kept = [".adaptiso-notes.part2.txt", ".adaptiso-1-0.party", ".adaptiso-1-.part",
