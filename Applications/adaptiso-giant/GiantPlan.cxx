@@ -54,6 +54,7 @@ Json identityJson(const GiantPlan& plan) {
             {"isovalue", plan.isovalue},
             {"method", toString(plan.method)},
             {"maxErrorMm", plan.maxErrorMm},
+            {"leavesNoise", plan.leavesNoise},
             {"side", plan.side}};
 }
 
@@ -101,6 +102,7 @@ GiantPlan planFrom(const Json& json) {
     plan.isovalue = json.at("isovalue");
     plan.method = json.at("method") == "mc" ? Method::MarchingCubes : Method::Adaptive;
     plan.maxErrorMm = json.at("maxErrorMm");
+    plan.leavesNoise = json.at("leavesNoise");
     plan.side = countOf(json.at("side"));
     for (const Json& warning : json.at("warnings")) {
         plan.warnings.push_back({warning.at("code"), warning.at("text")});

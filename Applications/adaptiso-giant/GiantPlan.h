@@ -27,6 +27,7 @@ struct GiantPlan {
     double isovalue = 0;
     Method method = Method::Adaptive;
     double maxErrorMm = 0;      ///< of Method::Adaptive
+    bool leavesNoise = false;   ///< it is the default bound
     std::int64_t side = 0;      ///< of a tile, cells
     std::vector<Index3> tiles;  ///< that may hold surface, ascending as orderOf() has it
     std::vector<Warning> warnings;

@@ -142,8 +142,9 @@ TriangleMesh meshOfTile(const GiantPlan& plan, const ImageRegions& image, const 
     if (!plan.isAdaptive()) {
         return extractTile(window, box.first, plan.geometry, plan.isovalue, cut, tile);
     }
-    SimplifiedPart part = extractSimplifiedTile(window, box.first, plan.geometry, plan.isovalue,
-                                                cut, tile, kTileShare * plan.maxErrorMm);
+    SimplifiedPart part =
+        extractSimplifiedTile(window, box.first, plan.geometry, plan.isovalue, cut, tile,
+                              kTileShare * plan.maxErrorMm, plan.leavesNoise);
     summary.errorBoundMm = part.errorBoundMm;
     summary.isUnchanged = part.isUnchanged;
     return std::move(part.mesh);

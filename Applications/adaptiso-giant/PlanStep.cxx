@@ -77,6 +77,7 @@ GiantPlan planOf(const GiantOptions& options) {
     plan.method = options.method;
     plan.side = options.side;
     if (plan.isAdaptive()) {
+        plan.leavesNoise = !options.maxErrorMm;
         plan.maxErrorMm = options.maxErrorMm.value_or(AdaptiveOptions::kDefaultMaxErrorVoxels *
                                                       narrowestSpacingMm(plan.geometry));
     }

@@ -121,9 +121,10 @@ ReportTable boundsTable(const VolumeView& volume, const TriangleMesh& full, doub
     const double voxelMm =
         *askedBoundMm(options, volume.geometry()) / AdaptiveOptions::kDefaultMaxErrorVoxels;
     for (const double voxels : {AdaptiveOptions::kDefaultMaxErrorVoxels, 0.25, 0.5, 1.0}) {
+        const bool isDefault = voxels == AdaptiveOptions::kDefaultMaxErrorVoxels;
         options.adaptive.maxErrorMm = voxels * voxelMm;
-        add(formatShort(voxels * voxelMm) +
-                (voxels == AdaptiveOptions::kDefaultMaxErrorVoxels ? " (default)" : ""),
+        options.adaptive.leavesNoise = isDefault;
+        add(formatShort(voxels * voxelMm) + (isDefault ? " (default)" : ""),
             total * probe() / slabTotal);
     }
     return table;

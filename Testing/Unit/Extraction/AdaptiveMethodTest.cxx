@@ -130,6 +130,45 @@ TEST(AdaptiveMethod, LeavesNoiseAtFullResolution) {
               full.mesh.triangles.size() * 81 / 100);
 }
 
+// 1.4 is what a bound may cost more than a count that reaches it: a bound is kept at every place, a
+// count's is that of its farthest.
+TEST(AdaptiveMethod, UsesAStatedBoundOnNoise) {
+    ImageGeometry geometry;
+    geometry.size = {36, 36, 36};
+    const Volume clean = ball(36, 13, geometry.indexToPhysical);
+    std::vector<float> samples(clean.view().as<float>().samples,
+                               clean.view().as<float>().samples + geometry.voxelCount());
+    std::uint64_t state = 5;
+    for (float& sample : samples) {  // more than the ramp: specks all around
+        sample += 12 * (static_cast<float>(nextRandom(state) >> 40) / 16777216.F - 0.5F);
+    }
+    const Volume noisy = Volume::fromSamples(std::move(samples), geometry);
+    const auto work = [](const Extraction& made) { return *made.statistics.adaptiveWork; };
+    const auto triangles = [](const Extraction& made) { return std::ssize(made.mesh.triangles); };
+    const Extraction byDefault = extractWith(noisy, 0, {});
+    EXPECT_GT(work(byDefault).trianglesKept, triangles(byDefault) / 2);
+    AdaptiveOptions stated;
+    for (const double bound : {AdaptiveOptions::kDefaultMaxErrorVoxels, 1.0, 3.0}) {
+        stated.maxErrorMm = bound;
+        const Extraction ours = extractWith(noisy, 0, stated);
+        EXPECT_EQ(work(ours).trianglesKept, 0) << bound;
+        EXPECT_LT(triangles(ours), triangles(byDefault)) << bound;
+        EXPECT_LE(*ours.statistics.errorBoundMm, bound);
+        AdaptiveOptions counted;
+        counted.maxTriangles =
+            static_cast<std::int64_t>(static_cast<double>(triangles(ours)) / 1.4);
+        const Extraction fewer = extractWith(noisy, 0, counted);  // or as few as pieces allow
+        if (*fewer.statistics.errorBoundMm <= bound) {
+            EXPECT_LE(static_cast<double>(triangles(ours)),
+                      1.4 * static_cast<double>(triangles(fewer)))
+                << bound;
+        }
+    }
+    stated.maxErrorMm = 2;
+    stated.leavesNoise = true;  // as tiles do by the default bound, of which they have a share
+    EXPECT_GT(work(extractWith(noisy, 0, stated)).trianglesKept, 0);
+}
+
 TEST(AdaptiveMethod, SimplifiesParallelSheetsThatFillTheVolume) {
     ImageGeometry geometry;
     geometry.size = {36, 34, 38};

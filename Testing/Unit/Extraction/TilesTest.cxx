@@ -59,7 +59,7 @@ SimplifiedPart simplifiedTileOf(const Volume& volume, double isovalue, const Til
                                 const Index3& tile, double maxErrorMm) {
     return inWindow(volume, cut, tile, [&](const Volume& window, const Index3& first) {
         return extractSimplifiedTile(window, first, volume.view().geometry(), isovalue, cut, tile,
-                                     maxErrorMm);
+                                     maxErrorMm, false);
     });
 }
 
@@ -272,7 +272,7 @@ TEST(Tiles, FarFromTheFirstVoxelAreWhatTheyAreNearIt) {
     const SimplifiedPart moved =
         inWindow(ball.volume, nearCut, tile, [&](const Volume& window, const Index3& first) {
             return extractSimplifiedTile(window, {first[0] + 600 * 32, first[1], first[2]}, far,
-                                         ball.isovalue, farCut, farTile, 0.1);
+                                         ball.isovalue, farCut, farTile, 0.1, false);
         });
     ASSERT_GT(part.mesh.triangles.size(), 100u);
     EXPECT_EQ(moved.mesh.triangles, part.mesh.triangles);

@@ -25,6 +25,7 @@ public:
           progress_(progress),
           frame_(full.frame()),
           wanted_{options.maxTriangles, options.reduction},
+          leavesNoise_(options.leavesNoise.value_or(!options.maxErrorMm && !wanted_.isGiven())),
           boundMm_(boundOf(options)) {
         shape_.leastAngleDeg = options.minAngleDeg;
     }
@@ -35,6 +36,7 @@ public:
             ++work_.runs;
             Attempt attempt = simplify(run > 0);
             report(run, 0.6);
+            mayUndo_ = mostUndone(attempt.surface);
             const std::int64_t triangles = attempt.surface.triangleCount();
             if (!keepsPromises(attempt)) continue;
             if (run + 1 < kMostRuns && !keepsCount(attempt.surface, triangles)) {
@@ -113,6 +115,10 @@ private:
         if (attempt.crossing.empty()) attempt.crossing = full_.insideOut(attempt.surface);
     }
 
+    /// Triangles are larger then, and so is all that comes of a place beyond it.
+    bool isBoundLarge() const {
+        return boundMm_ && *boundMm_ > kSheetDistance * frame_.narrowestMm();
+    }
     bool isBeyond(const ErrorBound& error) const { return boundMm_ && error.largestMm > *boundMm_; }
 
     /// Mends places beyond the bound, and takes the simplification back around those that mending
@@ -147,7 +153,7 @@ private:
 
     /// Takes the simplification back around places, as far as anything comes of it, and proves what
     /// was changed. \param reachMm  doubled each time
-    /// \return false where all of the surface is the full one already
+    /// \return false where all of the surface is the full one already, or too much has come back
     bool takeBack(Attempt& attempt, const std::vector<PlaceBeyond>& places, double& reachMm) {
         SimplifiedSurface& surface = attempt.surface;
         const std::ptrdiff_t points = std::ssize(surface.points);
@@ -158,8 +164,19 @@ private:
         }
         if (!changes) return false;
         work_.verticesUndone += std::ssize(surface.points) - points;
+        mayUndo_ -= std::ssize(surface.points) - points;
+        if (mayUndo_ < 0) return false;
         attempt.error = attempt.proof.proveAgain(surface, *changes);
         return true;
+    }
+
+    /// Vertices that may come back in this run. By a large bound a place can take more and more
+    /// with it, where a run that keeps nearer has none.
+    std::int64_t mostUndone(const SimplifiedSurface& surface) const {
+        if (work_.runs == kMostRuns || !isBoundLarge()) {
+            return std::numeric_limits<std::int64_t>::max();
+        }
+        return static_cast<std::int64_t>(kMostUndone * static_cast<double>(surface.points.size()));
     }
 
     /// Triangles with places beyond the bound, each once: some have hundreds of places.
@@ -213,11 +230,16 @@ private:
         const double boundMm = boundMm_.value_or(kCountDistance * frame_.narrowestMm());
         PatchLimits limits;
         limits.shape = shape_;
-        limits.leavesNoise = !wanted_.isGiven();
+        limits.leavesNoise = leavesNoise_;
         limits.box = full_.box();
+        const double least = isCareful && isBoundLarge() ? kSlackPart : kLeastSlackPart;
         limits.maxDistanceMm =
-            boundMm - std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm);
-        if (boundMm_) limits.webMm = kWeb * *boundMm_;
+            boundMm - std::max(least * boundMm,
+                               std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm));
+        if (boundMm_) {
+            limits.webMm = isBoundLarge() ? (isCareful ? 2 : 1) * kWidestWeb * frame_.narrowestMm()
+                                          : kWeb * *boundMm_;
+        }
         if (!wanted_.isGiven()) limits.maxFittedMm = kFitDistance * limits.maxDistanceMm;
         limits.provesAll = isCareful || limits.maxDistanceMm > sheetMm;
         limits.keepsHeirs = isCareful || boundMm_;
@@ -242,9 +264,11 @@ private:
     const ProgressCallback& progress_;
     const MetricFrame& frame_;
     WantedCount wanted_;
+    bool leavesNoise_;
     std::optional<double> boundMm_;
     StarLimits shape_;
-    std::int64_t fewer_ = 0;  ///< triangles that a run aims below the wanted count
+    std::int64_t mayUndo_ = 0;  ///< below 0: too much has come back
+    std::int64_t fewer_ = 0;    ///< triangles that a run aims below the wanted count
     AdaptiveWork work_;
     std::vector<SurfaceState::Triangle> mended_;  ///< of this run, before and after
 };

@@ -19,7 +19,10 @@ namespace adaptiso::detail {
 
 /// Vertices of samples stay that much below the bound, in voxels and as a part of the bound at
 /// most: points between samples may lie farther. More takes more triangles, less more mending.
-inline constexpr double kSlackVoxels = 0.05, kSlackPart = 0.3;
+/// Above half a voxel it is that part of the bound at least: triangles are larger there, and so is
+/// what comes apart around a place that can't be mended. Without it all of ch2bet came back at two
+/// voxels.
+inline constexpr double kSlackVoxels = 0.05, kSlackPart = 0.3, kLeastSlackPart = 0.1;
 /// Distance of samples, voxels, that a count without a bound starts with. Largest distances then
 /// stay below half a voxel.
 inline constexpr double kCountDistance = 0.46;
@@ -27,7 +30,8 @@ inline constexpr double kCountDistance = 0.46;
 /// so. Half a voxel is what the test's 4 x 4 x 4 samples are proved for (isSingleSheet).
 inline constexpr double kSheetDistance = 0.5;
 /// Runs: towards a count a second one proves every star where the first left triangles that cross,
-/// and aims lower by as many triangles as mending had added.
+/// and aims lower by as many triangles as mending had added; towards a bound it keeps kSlackPart
+/// below it.
 inline constexpr int kMostRuns = 2;
 /// Rounds of mending crossings in one run; rounds of mending distances that may gain little.
 inline constexpr int kMostMends = 6, kMostIdleMends = 1;
@@ -42,6 +46,10 @@ inline constexpr double kMended = 0.5;
 /// distance is smaller there from the start. Chosen by runs that had to begin again: ch2 at 60.5
 /// (three runs) and 100.5 (1,591 vertices undone) take one, for .5 and .2 % more triangles.
 inline constexpr double kWeb = 0.5;
+/// Voxels: by a bound above half a voxel wider parts are no webs, in a second run twice as wide
+/// ones: tangent planes hold there. With half the bound a brain takes 2.5 times the triangles at
+/// two voxels, a noisy head twice; with 0.25 voxel 1.4 times, 1.15 times.
+inline constexpr double kWidestWeb = 0.15;
 /// How often the square of the allowed distance is halved in a web.
 inline constexpr int kWebHalvings = 5;
 /// Vertices are fitted within this part of the allowed distance, or no farther than they were: then
@@ -204,6 +212,9 @@ inline constexpr double kMendCosine = 0.3;
 /// Around places that mending does not help vertices come apart again, voxels: in the first
 /// attempt, and twice as far in each next one.
 inline constexpr double kUndoReach = 1;
+/// By a bound above half a voxel a run ends, and another keeps nearer, when this part of the
+/// vertices has come apart: ch2bet at two voxels came back as a whole around 39 places.
+inline constexpr double kMostUndone = 0.25;
 /// So many times more comes apart to keep the surface a manifold.
 inline constexpr int kMostWidenings = 8;
 

@@ -80,13 +80,14 @@ public:
     }
 
     /// \throws InternalError  nothing could be proved
-    SimplifiedPart run(double maxErrorMm) const {
+    SimplifiedPart run(double maxErrorMm, bool leavesNoise) const {
         const Bricks bricks(grid_, crossedBlocks());
         if (bricks.count() == 0) return {};
         VolumeSurface full(geometry_, sampler_, bricks);
         full.stayIn(movingBox(), boxWithin(box_, geometry_));
         AdaptiveOptions aims;
         aims.maxErrorMm = maxErrorMm;
+        aims.leavesNoise = leavesNoise;
         AdaptiveResult made = simplifyWithin(full, aims, {});
         SimplifiedPart part;
         part.errorBoundMm = made.errorBoundMm;
@@ -171,14 +172,15 @@ private:
 
 SimplifiedPart extractSimplifiedTile(const VolumeView& window, const Index3& first,
                                      const ImageGeometry& geometry, double isovalue,
-                                     const TileCut& cut, const Index3& tile, double maxErrorMm) {
+                                     const TileCut& cut, const Index3& tile, double maxErrorMm,
+                                     bool leavesNoise) {
     requireTile(window, first, geometry, cut, tile);
     if (!canSimplifyInBoxes(geometry)) {
         throw InvalidInput("extractSimplifiedTile: the volume's axes are not at right angles");
     }
     const auto sampler = LatticeSampler::makeOfWindow(window, first, geometry, isovalue);
     try {
-        return TileSimplifier(*sampler, geometry, cut, tile).run(maxErrorMm);
+        return TileSimplifier(*sampler, geometry, cut, tile).run(maxErrorMm, leavesNoise);
     } catch (const InternalError&) {  // nothing could be proved
         SimplifiedPart whole;
         whole.mesh = extractTile(window, first, geometry, isovalue, cut, tile);

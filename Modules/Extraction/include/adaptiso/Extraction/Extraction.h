@@ -41,6 +41,9 @@ struct AdaptiveOptions {
     /// still; but where single places are mended in the end. Takes more triangles. \pre 0 to 40,
     /// degrees
     double minAngleDeg = 0;
+    /// Parts that are noise stay at full resolution: within a small bound they lose half of their
+    /// triangles at most, in several times the time. Not given: by the default bound alone.
+    std::optional<bool> leavesNoise;
 
     friend bool operator==(const AdaptiveOptions&, const AdaptiveOptions&) = default;
 };

@@ -94,10 +94,12 @@ struct SimplifiedPart {
 /// extractTile(), simplified as Method::Adaptive simplifies a volume's surface: the samples are
 /// known, so it costs less than simplifyInBox() of the same. Within a cell of the tile's walls all
 /// stays at full resolution, and vertices on them keep the bits that extractTile() gives them.
+/// \param leavesNoise  as AdaptiveOptions::leavesNoise
 /// \throws InvalidInput  axes are not at right angles (canSimplifyInBoxes)
 SimplifiedPart extractSimplifiedTile(const VolumeView& window, const Index3& first,
                                      const ImageGeometry& geometry, double isovalue,
-                                     const TileCut& cut, const Index3& tile, double maxErrorMm);
+                                     const TileCut& cut, const Index3& tile, double maxErrorMm,
+                                     bool leavesNoise);
 
 /// Simplifies a part of a surface as simplify() does, without moving what its neighbours know.
 ///
