@@ -31,6 +31,7 @@
 #include "adaptiso/ImageIO/ListSeries.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
+#include "adaptiso/Preprocessing/LabelValues.h"
 
 namespace adaptiso::mesher {
 
@@ -49,6 +50,7 @@ struct ImageInfo {
     ImageGeometry geometry;  ///< as preprocessed, like all that follows
     PixelType pixelType{};
     ValueSummary values;
+    bool looksLikeLabels = false;
     std::vector<std::string> refusals;  ///< reasons to refuse a surface
     std::optional<DicomSeries> series;  ///< with --show-phi, of DICOM
     std::optional<Volume> volume;       ///< for the page
@@ -178,6 +180,7 @@ ImageInfo gather(const MeshOptions& options, ProgressLine& progress) {
     info.pixelType = volume.pixelType();
     progress.show("values");
     info.values = summarizeValues(volume);
+    info.looksLikeLabels = findLabelValues(volume).has_value();
     info.refusals = refusalsOf(info.values);
     if (options.report.isWanted()) info.volume = std::move(prepared.volume);
     if (options.image.showsPhi && info.format == "DICOM") info.series = seriesOf(options);
@@ -286,7 +289,17 @@ std::string commandWith(const MeshOptions& options, const std::string& words,
 
 /// Commands to go on with, of isovalues to try.
 void printNext(std::ostream& out, const MeshOptions& options, const ImageInfo& info) {
-    if (!info.refusals.empty() || info.values.otsu.size() < 2) return;
+    if (!info.refusals.empty() || info.values.otsu.empty()) return;
+    const std::string input = options.input.string();
+    if (info.looksLikeLabels) {
+        out << "next        adaptiso-labels " << (input.starts_with('-') ? "-- " : "")
+            << oneLine(shellQuoted(input)) << '\n';
+        return;
+    }
+    if (info.values.otsu.size() == 1) {  // a mask
+        out << "next        " << commandWith(options, "--iso auto", input) << '\n';
+        return;
+    }
     std::string isovalues;
     for (const double threshold : info.values.otsu[1]) {
         isovalues += "--iso " + formatShort(threshold) + " ";

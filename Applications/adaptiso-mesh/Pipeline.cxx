@@ -22,6 +22,7 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
+#include "adaptiso/SurfacePipeline/SurfaceWarnings.h"
 
 namespace adaptiso::mesher {
 namespace {
@@ -122,6 +123,18 @@ std::vector<double> chooseIsovalues(const VolumeView& volume, const MeshRun& run
         isovalues.push_back(isovalue);
     }
     return isovalues;
+}
+
+/// Adds the warning about isovalues among labels: the first of them.
+void warnOfLabels(const VolumeView& volume, const std::vector<double>& isovalues, MeshRun& run) {
+    const auto labels = findLabelValues(volume);
+    for (const double isovalue : isovalues) {
+        const auto warning = labelsWarning(labels, isovalue, "adaptiso-labels");
+        if (!warning) continue;
+        addWarnings(run.warnings, {&*warning, 1}, inputName(run.options));
+        break;
+    }
+    run.printNewWarnings();
 }
 
 InputSummary summarize(const ReadVolume& read) {
@@ -241,10 +254,12 @@ std::optional<Warning> countWarning(const SurfaceSummary& surface, const MeshOpt
         *surface.errorBoundMm());
 }
 
+const ImageGeometry& meshedGeometry(const MeshRun& run) {
+    return run.preprocessed ? run.preprocessed->geometry : run.input.geometry;
+}
+
 std::optional<Warning> digitsWarning(const SurfaceSummary& surface, const MeshRun& run) {
-    const ImageGeometry& volume =
-        run.preprocessed ? run.preprocessed->geometry : run.input.geometry;
-    const auto asked = askedBoundMm(run.options.extraction(), volume);
+    const auto asked = askedBoundMm(run.options.extraction(), meshedGeometry(run));
     if (!asked) return std::nullopt;
     return roundingWarning(surface.file.filename().string(), *surface.errorBoundMm(), *asked,
                            surface.roundingMm, *surface.format);
@@ -262,8 +277,11 @@ std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
 /// Adds the warnings about the surfaces as their files hold them.
 void warnOfSurfaces(MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
+        auto noise =
+            noiseWarning(surface, run.options.extraction(), meshedGeometry(run), "--max-error ");
+        if (noise) noise->file = surface.file.filename().string();
         for (const auto& warning : {countWarning(surface, run.options), digitsWarning(surface, run),
-                                    insideOutWarning(surface)}) {
+                                    insideOutWarning(surface), noise}) {
             if (warning) run.warnings.push_back(*warning);
         }
     }
@@ -330,6 +348,8 @@ int runMesh(const MeshOptions& options) {
     run.printNewWarnings();
     const std::vector<double> isovalues =
         run.stage("read", [&] { return chooseIsovalues(volume, run); });
+
+    run.stage("read", [&] { warnOfLabels(volume, isovalues, run); });
 
     const SpanSpaceIndex index = run.stage("index", [&] {
         return naming(baseName(options.input),

@@ -4,12 +4,13 @@ import gzip
 import json
 import math
 import os
+import re
 import struct
 import subprocess
 import tarfile
 import unittest
 
-from support import BIN, CHECK_FAILED, OK, SOURCE, ApplicationTest, Image, ball, from_function, main, write_nifti
+from support import BIN, CHECK_FAILED, OK, SOURCE, ApplicationTest, Image, ball, from_function, main, noise, write_nifti
 from pathlib import Path
 from random import Random
 
@@ -161,6 +162,52 @@ class Count(ApplicationTest):
             self.assertEqual(done.returncode, OK, done.stdout)
             genera.append(json.loads(done.stdout)["surfaces"][0]["genus"])
         self.assertEqual(genera[0], genera[1])
+
+
+class Noise(ApplicationTest):
+    """Every voxel by chance: the default bound leaves it whole, and says so; a stated one is used."""
+
+    def setUp(self):
+        super().setUp()
+        write_nifti(self.path("noise.nii"), noise(24))
+
+    def made(self, *options):
+        report = self.report("noise.nii", "--iso", "200.5", *options, "-o", "a.ply")
+        return report["surfaces"][0], report["warnings"]
+
+    def test_that_the_default_bound_leaves_is_named_with_a_bound_that_thins_it(self):
+        whole, warnings = self.made()
+        self.assertEqual([w["code"] for w in warnings], ["noise-kept"])
+        self.assertEqual(whole["adaptive"]["trianglesKept"], whole["triangles"])
+        bound = re.search(r"^100 % of the triangles are noise.*--max-error (\S+), half a voxel, thins it$",
+                          warnings[0]["text"])[1]
+        thinned, warnings = self.made("--max-error", bound)
+        self.assertEqual(warnings, [])
+        self.assertLessEqual(thinned["errorBoundMm"], float(bound))
+        self.assertLess(thinned["triangles"], whole["triangles"] / 2)
+
+    def test_is_simplified_within_any_stated_bound_also_the_default_s(self):
+        whole, _ = self.made()
+        before = whole["triangles"]
+        for bound in (0.15, 0.3, 1, 3):
+            surface, warnings = self.made("--max-error", bound)
+            self.assertEqual(warnings, [])
+            self.assertEqual(surface["adaptive"]["trianglesKept"], 0)
+            self.assertLess(surface["triangles"], before)
+            before = surface["triangles"]
+
+    def test_is_counted_before_pieces_are_dropped(self):
+        _, warnings = self.made("--largest")
+        self.assertRegex(warnings[0]["text"], "^100 %")
+        for options in (("--triangles", 20000), ("--method", "mc")):
+            self.assertEqual(self.made(*options)[1], [])
+
+    def test_fails_strict_runs_unless_allowed(self):
+        run = ("noise.nii", "--iso", "200.5", "-o", "a.ply", "--strict")
+        done = self.run_mesh(*run)
+        self.assertEqual(done.returncode, CHECK_FAILED)
+        self.assertRegex(done.stderr, "--strict: 1 warning, so no surface was written: a.ply: 100 %")
+        self.mesh(*run, "--allow", "noise-kept")
 
 
 if __name__ == "__main__":

@@ -105,6 +105,15 @@ class Info(ApplicationTest):
             self.mesh(*shlex.split(commands[0])[1:])
             self.assertNotIn("scans of today", self.path("page.html").read_text())
 
+    def test_ends_with_a_command_for_a_mask_and_for_a_label_map(self):
+        for name, label in (("mask.nii", 1), ("-map.nii", 7)):
+            write_nifti(self.path(name), from_function(
+                20, "B", lambda x, y, z: label if x < -5 else 1 if x < 3 else 0))
+        mask, labels = (self.mesh("--info", "--", name).stdout.partition("\nnext        ")[2].splitlines()
+                        for name in ("mask.nii", "-map.nii"))
+        self.assertEqual((mask, labels), (["adaptiso-mesh --iso auto mask.nii"], ["adaptiso-labels -- -map.nii"]))
+        self.mesh(*shlex.split(mask[0])[1:])
+
     def test_the_histogram_has_a_row_for_each_value_of_a_mask(self):
         write_nifti(self.path("in.nii"), from_function(
             10, "B", lambda x, y, z: 1 if x < -3 else 0))  # 2 of 10 columns

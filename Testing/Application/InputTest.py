@@ -5,8 +5,8 @@ import math
 import re
 import struct
 
-from support import (BAD_INPUT, ApplicationTest, Image, ball, main, write_metaimage, write_nifti,
-                     write_nrrd)
+from support import (BAD_INPUT, ApplicationTest, Image, ball, from_function, main, write_metaimage,
+                     write_nifti, write_nrrd)
 
 
 class GoodInput(ApplicationTest):
@@ -25,6 +25,23 @@ class GoodInput(ApplicationTest):
         self.mesh("ct.nii", "--iso", "-100")
         self.mesh("--iso", "-100.5", "ct.nii")
         self.assertEqual(self.names(), ["ct-iso-100.5.vtp", "ct-iso-100.vtp", "ct.nii"])
+
+    def test_a_label_map_is_named_where_the_isovalue_lies_among_its_labels(self):
+        def labels(values):
+            return from_function(16, "B", lambda x, y, z: values[(x > -4) + (x > 0) + (x > 4)])
+        write_nifti(self.path("map.nii"), labels((0, 1, 2, 7)))
+        for isovalue, of_it in ((0.5, 0), (1, 1), (1.5, 1), (2, 1), (6, 1)):
+            warnings = self.report("map.nii", "--iso", isovalue, "-o", "a.ply")["warnings"]
+            self.assertEqual([w["code"] for w in warnings], of_it * ["looks-like-labels"], isovalue)
+        self.assertRegex(warnings[0]["text"], "holds 4 different whole numbers.*for regions: adaptiso-labels$")
+        self.assertEqual(warnings[0]["file"], "map.nii")
+        several = self.report("map.nii", "--iso", 1, "--iso", 2, "-o", "a.ply")["warnings"]
+        self.assertEqual(len(several), 1)
+        for values in ((0, 1, 1, 1), (0, 255, 0, 255), (0, 100, 200, 255 - 5)):  # masks, a phantom
+            write_nifti(self.path("other.nii"), labels(values))
+            self.assertEqual(self.report("other.nii", "--iso", max(values), "-o", "a.ply")["warnings"], [])
+        write_nifti(self.path("ball.nii"), ball())  # whole numbers, from voxel to voxel
+        self.assertEqual(self.report("ball.nii", "--iso", 100, "-o", "a.ply")["warnings"], [])
 
     def test_otsu_chooses_between_two_values_and_says_what(self):
         ones = [200 if 2 < n % 10 < 7 and 2 < n // 10 % 10 < 7 and 2 < n // 100 < 7 else 50

@@ -204,6 +204,33 @@ class Samples(unittest.TestCase):
                                               threads=threads), self.mesh)
 
 
+class Warnings(unittest.TestCase):
+    def logged(self, image, level, **options):
+        with self.assertLogs("adaptiso", "WARNING") as logs:
+            mesh = adaptiso.surface(image, level, **options)
+        codes = [warning["code"] for warning in mesh.report()["warnings"]]
+        return logs.output, codes
+
+    def test_labels_are_named_where_the_level_lies_among_them(self):
+        labels = np.zeros((16, 16, 16), np.int64)
+        labels[4:8], labels[8:12], labels[12:] = 1, 2, 7
+        for image in (labels, np.asfortranarray(labels), labels.astype(float)):
+            lines, codes = self.logged(image, 1)
+            self.assertEqual(codes, ["looks-like-labels"])
+            self.assertRegex(lines[0], "surface: holds 4 different whole numbers.*adaptiso.labels()")
+        with self.assertNoLogs("adaptiso", "WARNING"):
+            adaptiso.surface(labels, 0.5)
+            adaptiso.surface(labels > 0, 1)
+
+    def test_noise_that_the_default_bound_leaves_is_named(self):
+        noise = np.random.default_rng(1).random((24, 24, 24))
+        lines, codes = self.logged(noise, 0.7)
+        self.assertEqual(codes, ["noise-kept"])
+        self.assertRegex(lines[0], "surface: 100 % of the triangles are noise.*max_error=0.5")
+        with self.assertNoLogs("adaptiso", "WARNING"):
+            adaptiso.surface(noise, 0.7, max_error=0.5)
+
+
 class Affines(unittest.TestCase):
     def check(self, affine, order="F"):
         volume = np.array(ball((30, 28, 26), affine=affine), order=order)

@@ -97,6 +97,7 @@ TriangleMesh extractPieces(const Extractor& extract, const ExtractionOptions& op
     const auto whole = [&] {
         Extraction extraction = extract(options);
         record.statistics = std::move(extraction.statistics);
+        record.madeTriangles = std::ssize(extraction.mesh.triangles);
         return std::move(extraction.mesh);
     };
     if (!record.choseFirst) return whole();
@@ -119,6 +120,7 @@ TriangleMesh extractPieces(const Extractor& extract, const ExtractionOptions& op
     record.statistics.errorBoundMm = made.statistics.errorBoundMm;
     record.statistics.wantedTriangles = made.statistics.wantedTriangles;
     record.statistics.adaptiveWork = made.statistics.work;
+    record.madeTriangles = std::ssize(made.mesh.triangles);
     return std::move(made.mesh);
 }
 

@@ -6,6 +6,7 @@
 
 #include "Grids.h"
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Preprocessing/LabelValues.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
 
 namespace adaptiso::testing {
@@ -108,7 +109,7 @@ TEST(Preprocess, WarnsOfBlendedLabelsOnly) {
             const Vec3 index = geometry.toIndex(p);
             const auto at = [&](int axis) { return static_cast<int>(std::round(index[axis])); };
             if (at(2) < 12) return 0;
-            return (at(0) / 4 + 6 * at(1) + 144 * (at(2) - 12)) % distinctValues;
+            return (37 * (at(0) / 4) + 6 * at(1) + 144 * (at(2) - 12)) % distinctValues;
         };
         return preprocess(sampledFrom<std::uint8_t>(geometry, label), options).warnings;
     };
@@ -123,8 +124,8 @@ TEST(Preprocess, WarnsOfBlendedLabelsOnly) {
     EXPECT_EQ(warningsOf(100, resample).size(), 1U);
     EXPECT_TRUE(warningsOf(7, nearest).empty());
     EXPECT_TRUE(warningsOf(7, crop).empty());
-    EXPECT_TRUE(warningsOf(2, smooth).empty());    // a mask
-    EXPECT_TRUE(warningsOf(200, smooth).empty());  // a scan
+    EXPECT_EQ(warningsOf(200, resample).size(), 1U);  // atlases have as many
+    EXPECT_TRUE(warningsOf(2, smooth).empty());       // a mask
 }
 
 TEST(Preprocess, FewGreyValuesOfAScanAreNoLabels) {
@@ -139,6 +140,42 @@ TEST(Preprocess, FewGreyValuesOfAScanAreNoLabels) {
         const Volume head = Volume::fromSamples(samples, noise.view().geometry());
         EXPECT_TRUE(preprocess(head, smooth).warnings.empty()) << greyValues;
     }
+}
+
+TEST(LabelValues, AreOfWholeNumbersThatFillRegions) {
+    const ImageGeometry geometry = centredGeometry({24, 24, 24}, {1, 1, 1});
+    const auto slabs = [&](auto type, std::vector<int> values) {
+        using T = decltype(type);
+        return sampledFrom<T>(geometry, [&, values](const Vec3& p) {
+            const auto slab = static_cast<std::size_t>(std::round(geometry.toIndex(p).x) / 6);
+            return static_cast<T>(values[slab]);
+        });
+    };
+    const auto labels = findLabelValues(slabs(std::uint8_t{}, {0, 2, 7, 1}));
+    ASSERT_TRUE(labels);
+    EXPECT_EQ(labels->count, 4U);
+    EXPECT_EQ(labels->first, 1);
+    EXPECT_EQ(findLabelValues(slabs(std::int16_t{}, {-5, 3, 3000, 0}))->first, 0);
+    EXPECT_EQ(findLabelValues(slabs(float{}, {0, 41, 2, 2}))->first,
+              2);  // as some programs store them
+    EXPECT_FALSE(findLabelValues(slabs(std::uint8_t{}, {0, 1, 1, 0})));  // a mask
+    EXPECT_FALSE(findLabelValues(slabs(std::uint8_t{}, {0, 255, 255, 0})));
+    EXPECT_FALSE(findLabelValues(slabs(std::uint8_t{}, {3, 3, 3, 3})));
+    EXPECT_FALSE(findLabelValues(slabs(std::int16_t{}, {-1000, 0, 40, 1000})));  // a phantom
+    const auto scan = [&](double level, auto type) {  // smooth: values change by one step
+        using T = decltype(type);
+        return sampledFrom<T>(geometry, [=](const Vec3& p) {
+            return static_cast<T>(std::floor(std::max(0.0, 10 - norm(p)) * level));
+        });
+    };
+    for (const double level : {1.0, 2.0, 8.0}) {
+        EXPECT_FALSE(findLabelValues(scan(level, std::uint8_t{}))) << level;
+        EXPECT_FALSE(findLabelValues(scan(level, float{}))) << level;
+    }
+    const auto fractions = sampledFrom<float>(geometry, [](const Vec3& p) {
+        return p.x < 0 ? 0.F : p.y < 0 ? 0.5F : 1.F;
+    });
+    EXPECT_FALSE(findLabelValues(fractions));
 }
 
 TEST(Preprocess, WarnsWhenResamplingStraightensAShear) {

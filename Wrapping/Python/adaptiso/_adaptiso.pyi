@@ -13,6 +13,8 @@ class InternalError(RuntimeError): ...
 class MeshData:
     error_bound: Optional[float]
     report: str
+    @property
+    def surface_warnings(self) -> List[Warned]: ...
     @staticmethod
     def from_arrays(vertices: npt.NDArray[np.float64], faces: npt.NDArray[np.int64],
                     normals: Optional[npt.NDArray[np.float32]] = ..., frame: str = ...,

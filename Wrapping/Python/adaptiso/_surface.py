@@ -9,7 +9,7 @@ from ._adaptiso import Error
 from ._arguments import (Progress, Warned, aim, flag, number, progress as checked_progress, shown,
                          smallest_angle, threads as checked_threads, word)
 from ._images import Samples, keep_read_only, prepared, read_only, samples_of
-from ._mesh import Mesh
+from ._mesh import Mesh, logger
 
 METHODS = ("adaptive", "boxes", "dmc", "asc", "mc")
 BORDERS = ("closed", "open")
@@ -38,7 +38,8 @@ def surface(image: Any, level: Union[float, str], *, max_error: Optional[float] 
         The isovalue; inside is where samples are >= level. "auto": chosen by Otsu's method.
     max_error : float, optional
         Largest distance in mm, both ways, to the surface of marching cubes. Default: 0.15 of the
-        least distance between planes of voxels, unless `triangles` or `reduction` is given.
+        least distance between planes of voxels, unless `triangles` or `reduction` is given; that
+        leaves noise at full resolution, with a warning.
     triangles : int, optional
         Simplify to so many triangles, as close to that surface as the method gets; of the pieces
         that are kept.
@@ -179,6 +180,8 @@ def _options(level: Any, max_error: Any, triangles: Any, reduction: Any, min_ang
 
 def _make(samples: Samples, index: Optional[_adaptiso.ArrayIndex], border: str,
           options: Dict[str, Any]) -> Mesh:
-    return Mesh._of(_adaptiso.make_surface(samples.volume, index, border, file=samples.file,
-                                           format=samples.format, warnings=samples.warnings,
-                                           **options))
+    data = _adaptiso.make_surface(samples.volume, index, border, file=samples.file,
+                                  format=samples.format, warnings=samples.warnings, **options)
+    for warning in data.surface_warnings:
+        logger.warning("surface: %s", warning.of(samples.file))
+    return Mesh._of(data)

@@ -77,8 +77,9 @@ std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) 
     Json surface = surfaceJson(history.record, history.extraction.method, history.index.blockSize);
     surface["output"] = nullptr;
     std::vector<Warning> warnings;
-    addWarnings(warnings, history.origin.warnings,
-                history.origin.file.empty() ? "the image" : history.origin.file);
+    const std::string file = history.origin.file.empty() ? "the image" : history.origin.file;
+    addWarnings(warnings, history.origin.warnings, file);
+    addWarnings(warnings, history.warnings, file);
     const Json report{
         {"schema", "adaptiso-mesh/1"},
         {"program", {{"name", kProgramName}, {"version", ADAPTISO_VERSION}}},
@@ -331,6 +332,7 @@ std::optional<ImageGeometry> imageOf(const std::optional<std::vector<std::int64_
 
 void declareMeshes(py::module_& module) {
     py::class_<MeshData, std::shared_ptr<MeshData>>(module, "MeshData")
+        .def_property_readonly("surface_warnings", &MeshData::surfaceWarnings)
         .def_static(
             "from_arrays",
             [](const py::array_t<double, py::array::c_style>& points,

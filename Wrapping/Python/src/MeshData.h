@@ -40,6 +40,7 @@ struct SurfaceHistory {
     ImageOrigin origin;
     PixelType pixelType{};
     ValueRange range{};
+    std::vector<Warning> warnings;  ///< of the surface
     int threads = 0;
     std::vector<std::pair<std::string, double>> seconds;
     double peakMemoryMb = 0;
@@ -89,6 +90,10 @@ public:
 
     /// The report adaptiso-mesh/1, or "" of a mesh that was not made from an image.
     std::string report();
+    /// Of the surface that was made from an image.
+    std::vector<Warning> surfaceWarnings() const {
+        return history_ ? history_->warnings : std::vector<Warning>{};
+    }
     void setReport(std::string report) { report_ = std::move(report); }
 
     /// The bound that the mesh was asked to keep, mm; none: none, or not known.

@@ -20,6 +20,7 @@
 #include "adaptiso/ImageIO/SampleStatistics.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
+#include "adaptiso/SurfacePipeline/SurfaceWarnings.h"
 
 namespace adaptiso::python {
 namespace {
@@ -173,6 +174,16 @@ TriangleMesh finished(TriangleMesh mesh, const SurfaceRequest& request, SurfaceH
         request, [&] { return finishSurface(std::move(mesh), finish, history.record).mesh; });
 }
 
+std::vector<Warning> warningsOf(const ArrayVolume& volume, const SurfaceHistory& history) {
+    std::vector<Warning> warnings;
+    for (const auto& warning :
+         {labelsWarning(findLabelValues(volume.view), history.record.isovalue, "adaptiso.labels()"),
+          noiseWarning(history.record, history.extraction, volume.geometry, "max_error=")}) {
+        if (warning) warnings.push_back(*warning);
+    }
+    return warnings;
+}
+
 /// Makes a surface as adaptiso-mesh does, from the samples on.
 /// \param built  an index, or null
 std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex* built,
@@ -186,6 +197,7 @@ std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex* bui
     watcher.run(request.threads, [&] {
         mesh = extracted(volume.view, built, request, history, watcher);
         mesh = finished(std::move(mesh), request, history, watcher);
+        history.warnings = warningsOf(volume, history);
         watcher.tell("check", 1);
     });
     history.peakMemoryMb = peakMemoryMb();

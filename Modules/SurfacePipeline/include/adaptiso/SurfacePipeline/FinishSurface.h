@@ -36,6 +36,7 @@ struct SurfaceRecord {
                                       ///< else all
     bool choseFirst = false;          ///< pieces, before they were simplified
     bool isPart = false;              ///< pieces were dropped
+    std::int64_t madeTriangles = 0;   ///< before the pieces were dropped
     TopologyReport topology;          ///< of the kept pieces
     double areaMm2 = 0;
     double roundingMm = 0;                        ///< largest move of a point by the file's digits
@@ -64,7 +65,7 @@ using Extractor = std::function<Extraction(const ExtractionOptions&)>;
 /// `selection` keeps: these are chosen at full resolution and simplified alone, so that no triangle
 /// is spent on what goes, and bound and statistics are theirs. Without a count pieces do not
 /// compete: the surface is the extractor's, whole, and finishSurface() drops pieces.
-/// \param record  gets statistics, choseFirst, isPart
+/// \param record  gets statistics, choseFirst, isPart, madeTriangles
 /// \throws NothingLeft, InvalidInput  as finishSurface()
 /// Cost: where pieces are chosen first, the full-resolution mesh in memory.
 TriangleMesh extractPieces(const Extractor& extract, const ExtractionOptions& options,
