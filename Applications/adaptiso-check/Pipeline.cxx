@@ -163,6 +163,7 @@ private:
         }
         surface.checks = judgeSurface(surface.facts, options_);
         warnOfWalls(surface);
+        warnOfSize(surface);
         meshes_.push_back(std::move(loaded));
     }
 
@@ -174,6 +175,18 @@ private:
              "walls below " + formatMeasure(walls->thinAreaMm2) + " mm2 are thinner than " +
                  formatNumber(options_.wallLimitMm()) + " mm; a printer may leave holes there",
              baseName(surface.file)});
+    }
+
+    /// Limits that fit no surface of this size.
+    void warnOfSize(const SurfaceRun& surface) {
+        const double diagonalMm = norm(surface.facts.size.extentMm);
+        for (const auto& [name, limit] :
+             {std::pair{"--min-gap", options_.minGapMm}, std::pair{"--max-off", options_.maxOffMm},
+              std::pair{"--min-wall", options_.minWallMm}}) {
+            if (!limit) continue;
+            const auto warning = boundOverSize(name, *limit, diagonalMm, baseName(surface.file));
+            if (warning) run_.warnings.push_back(*warning);
+        }
     }
 
     void readSurface(NamedMesh& mesh, SurfaceRun& surface) {

@@ -421,13 +421,14 @@ private:
     /// All but the largest piece, and those that are the wrong way round.
     void addComponents() {
         std::vector<SurfaceComponent> pieces = surface_.facts.topology.components;
-        if (const Check* check = failed(surface_.checks, "outward")) {
+        const Check* outward = failed(surface_.checks, "outward");
+        if (outward && surface_.facts.insideOut) {
             const std::vector<std::int64_t>& wrong = *surface_.facts.insideOut;
             for (std::size_t n = 0; n < std::min(wrong.size(), kMostSpotsOfAKind); ++n) {
                 const SurfaceComponent& piece = pieces[static_cast<std::size_t>(wrong[n])];
                 spots_.push_back({"piece of " + formatCount(piece.triangles) +
                                       " triangles that is inside out" + in_,
-                                  mesh_.points[piece.firstVertex], check->isRequired,
+                                  mesh_.points[piece.firstVertex], outward->isRequired,
                                   static_cast<int>(n)});
             }
         }

@@ -163,6 +163,25 @@ std::vector<Check> makeChecks(const CompareRun& run) {
     return checks;
 }
 
+void warnOfRough(CompareRun& run) {
+    const std::int64_t rough = run.distances.combined.rough;
+    if (rough == 0) return;
+    run.warnings.push_back(
+        {"distance-rough", formatCount(rough) + (rough == 1 ? " point lies" : " points lie") +
+                               " about as far from more than 500 triangles each: distances there "
+                               "may be a hundredth too large"});
+}
+
+/// Limits that fit no surface of this size. \param diagonalMm  of the smaller surface
+void warnOfSize(double diagonalMm, CompareRun& run) {
+    for (const auto& [name, limit] : {std::pair{"--max-mean", run.options.maxMeanMm},
+                                      std::pair{"--max-hausdorff", run.options.maxHausdorffMm}}) {
+        if (!limit) continue;
+        const auto warning = boundOverSize(name, *limit, diagonalMm, {});
+        if (warning) run.warnings.push_back(*warning);
+    }
+}
+
 /// The value of a failed check in the fewest digits that differ from the limit.
 std::string digitsApart(const Check& check) {
     const std::string text = formatShort(check.valueMm);
@@ -191,7 +210,9 @@ int runCompare(const CompareOptions& options) {
         return surfaceDistance(a, b,
                                {options.samples, options.isSymmetric, run.progress.callback()});
     });
+    warnOfRough(run);
     run.checks = makeChecks(run);
+    warnOfSize(std::min(norm(boundingBox(a).size()), norm(boundingBox(b).size())), run);
     run.stage("overlap", [&] { measureOverlap(run, a, b); });
     run.stage("write", [&] {
         if (!options.colored.empty()) writeColored(run, a, b, common);

@@ -35,8 +35,10 @@ std::string faultOf(const TriangleMesh& mesh, const TopologyReport& topology,
         euler += component.eulerCharacteristic();
     }
     if (!(volume > 0)) return "faces inward";
-    const std::int64_t insideOut = std::ssize(findInsideOutPieces(mesh, topology));
-    if (insideOut > 0) {
+    const auto pieces = findInsideOutPieces(mesh, topology);
+    if (!pieces) return "has too many pieces within or across each other to check their sides";
+    if (!pieces->empty()) {
+        const std::int64_t insideOut = std::ssize(*pieces);
         return "has " + formatCount(insideOut) + (insideOut == 1 ? " piece" : " pieces") +
                " inside out";
     }
@@ -98,13 +100,12 @@ LabelsCheck checkCrossings(const LabelComplex& complex) {
     LabelsCheck check{"no two triangles cross"};
     const TriangleMesh whole{complex.points, {}, complex.triangles};
     const SelfIntersections found = findSelfIntersections(whole, {.maxPairs = kMostPlaces});
-    check.isPassed = found.pairCount == 0;
+    check.isPassed = found.isClear();
     for (const TrianglePair& pair : found.pairs) {
         check.pointsMm.push_back(middleOfTriangle(complex.points, complex.triangles[pair[0]]));
     }
     if (!check.isPassed) {
-        check.finding = formatCount(found.pairCount) +
-                        (found.pairCount == 1 ? " pair crosses" : " pairs cross");
+        check.finding = crossingText(found);
     }
     return check;
 }

@@ -231,6 +231,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
         }
     });
 
+    summary.diagonalMm = norm(boundingBox(finished.mesh).size());
     run.stage("write", [&] {
         AtomicOutput& output = run.addOutput(summary.file, ownFolder(options, summary.file));
         output.write([&](const fs::path& path) { writeMesh(finished.mesh, path, write); });
@@ -262,7 +263,7 @@ std::optional<Warning> digitsWarning(const SurfaceSummary& surface, const MeshRu
     const auto asked = askedBoundMm(run.options.extraction(), meshedGeometry(run));
     if (!asked) return std::nullopt;
     return roundingWarning(surface.file.filename().string(), *surface.errorBoundMm(), *asked,
-                           surface.roundingMm, *surface.format);
+                           surface.roundingMm.value_or(0), *surface.format);
 }
 
 std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
@@ -274,6 +275,12 @@ std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
                    surface.file.filename().string()};
 }
 
+std::optional<Warning> sizeWarning(const SurfaceSummary& surface, const MeshOptions& options) {
+    if (!options.adaptive.maxErrorMm) return std::nullopt;
+    return boundOverSize("--max-error", *options.adaptive.maxErrorMm, surface.diagonalMm,
+                         surface.file.filename().string());
+}
+
 /// Adds the warnings about the surfaces as their files hold them.
 void warnOfSurfaces(MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
@@ -281,7 +288,8 @@ void warnOfSurfaces(MeshRun& run) {
             noiseWarning(surface, run.options.extraction(), meshedGeometry(run), "--max-error ");
         if (noise) noise->file = surface.file.filename().string();
         for (const auto& warning : {countWarning(surface, run.options), digitsWarning(surface, run),
-                                    insideOutWarning(surface), noise}) {
+                                    insideOutWarning(surface), noise,
+                                    sizeWarning(surface, run.options)}) {
             if (warning) run.warnings.push_back(*warning);
         }
     }

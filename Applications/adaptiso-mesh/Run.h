@@ -49,6 +49,7 @@ struct SurfaceSummary : SurfaceRecord {
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
     std::uintmax_t bytes = 0;
+    double diagonalMm = 0;  ///< of its box
 };
 
 /// A surface to show.

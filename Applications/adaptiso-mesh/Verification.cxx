@@ -28,8 +28,8 @@ std::int64_t eulerCharacteristic(const TopologyReport& topology) {
 Verification verify(const VolumeView& volume, const SpanSpaceIndex& index, const TriangleMesh& mesh,
                     const FileDigits& digits, const MeshOptions& options,
                     const SurfaceRecord& record) {
-    const std::int64_t crossing = findSelfIntersections(mesh, {.maxPairs = 0}).pairCount;
-    require(crossing == 0, std::to_string(crossing) + " pairs of triangles cross");
+    const SelfIntersections crossings = findSelfIntersections(mesh, {.maxPairs = 0});
+    require(crossings.isClear(), crossingText(crossings));
 
     ExtractionOptions atFullResolution;
     atFullResolution.isovalue = record.isovalue;
@@ -42,8 +42,10 @@ Verification verify(const VolumeView& volume, const SpanSpaceIndex& index, const
                 eulerCharacteristic(ours) == eulerCharacteristic(theirs),
             "its components or holes are not those of marching cubes");
     const bool isJudged = options.index.border == Border::Closed && ours.isWatertight();
-    const std::size_t insideOut = isJudged ? findInsideOutPieces(mesh, ours).size() : 0;
-    require(insideOut == 0, std::to_string(insideOut) + " pieces are inside out");
+    if (isJudged) {
+        const auto insideOut = findInsideOutPieces(mesh, ours);
+        require(!insideOut || insideOut->empty(), "pieces are inside out");
+    }
 
     constexpr double kRounding = 1e-9;    // of the bound: coordinates in other frames
     constexpr double kMeasuring = 1e-14;  // of the surface's extent: what distances are measured to

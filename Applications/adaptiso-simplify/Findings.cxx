@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "Common/ReportOutput.h"
 #include "Run.h"
@@ -37,6 +36,39 @@ constexpr std::array<Kind, 7> kKinds{{
      "vertices that no triangle uses", true, false},
 }};
 
+/// Triangles with the corners of another, the same way round.
+std::int64_t countSameWayRound(const TriangleMesh& mesh) {
+    std::vector<Triangle> turned = mesh.triangles;
+    for (Triangle& t : turned)
+        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    std::sort(turned.begin(), turned.end());
+    return std::ssize(turned) - (std::unique(turned.begin(), turned.end()) - turned.begin());
+}
+
+/// simplify() drops those the same way round, and keeps two of opposite ways.
+void splitDuplicates(const TriangleMesh& mesh, std::vector<Finding>& findings) {
+    const auto found = std::find_if(findings.begin(), findings.end(), [](const Finding& finding) {
+        return finding.key == "duplicateTriangles";
+    });
+    if (found == findings.end()) return;
+    const std::int64_t dropped = std::min(found->count, countSameWayRound(mesh));
+    Finding opposite = *found;
+    opposite.key = "oppositeTriangles";
+    opposite.count = found->count - dropped;
+    opposite.isDropped = false;
+    opposite.what = opposite.count == 1
+                        ? "triangle on the corners of another, facing the other way"
+                        : "triangles on the corners of others, facing the other way";
+    if (opposite.count == 0) return;
+    if (dropped == 0) {
+        *found = opposite;
+        return;
+    }
+    found->count = dropped;
+    if (dropped == 1) found->what = "triangle that is there twice";
+    findings.insert(found, opposite);
+}
+
 }  // namespace
 
 std::string Finding::text() const {
@@ -54,7 +86,7 @@ bool isSound(const std::vector<Finding>& findings) {
                         [](const Finding& finding) { return finding.isFault; });
 }
 
-std::vector<Finding> findTopologyFaults(const TopologyReport& topology) {
+std::vector<Finding> findTopologyFaults(const TriangleMesh& mesh, const TopologyReport& topology) {
     std::vector<Finding> findings;
     for (const Kind& kind : kKinds) {
         const std::int64_t count = topology.count(kind.defect);
@@ -70,6 +102,7 @@ std::vector<Finding> findTopologyFaults(const TopologyReport& topology) {
                          [&](const TopologyExample& each) { return each.defect == kind.defect; });
         if (example != topology.examples.end()) finding.placeMm = example->pointMm;
     }
+    splitDuplicates(mesh, findings);
     return findings;
 }
 
@@ -86,15 +119,7 @@ std::optional<Finding> crossingFinding(const TriangleMesh& mesh,
 }
 
 std::vector<std::int64_t> findCrossing(const TriangleMesh& mesh) {
-    SelfIntersectionOptions options;
-    options.maxPairs = std::numeric_limits<std::int64_t>::max();
-    std::vector<std::int64_t> triangles;
-    for (const TrianglePair& pair : findSelfIntersections(mesh, options).pairs) {
-        triangles.insert(triangles.end(), pair.begin(), pair.end());
-    }
-    std::sort(triangles.begin(), triangles.end());
-    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-    return triangles;
+    return crossingTriangles(mesh);
 }
 
 }  // namespace adaptiso::simplifier

@@ -85,7 +85,7 @@ void addCrossing(const TriangleMesh& mesh, const std::vector<std::int64_t>& tria
 /// simplify() reports them.
 void check(const TriangleMesh& mesh, SimplifyRun& run) {
     run.input.topology = checkTopology(mesh);
-    run.findings = findTopologyFaults(run.input.topology);
+    run.findings = findTopologyFaults(mesh, run.input.topology);
     if (run.command.requiresSound && isSound(run.findings)) {
         addCrossing(mesh, findCrossing(mesh), run.findings);
     }
@@ -105,6 +105,13 @@ void warnOfRounding(SimplifyRun& run) {
     const auto warning =
         roundingWarning(baseName(run.output.file), run.errorBoundMm(), *run.command.aim.maxErrorMm,
                         run.roundingMm, *run.output.format);
+    if (warning) run.warnings.push_back(*warning);
+}
+
+void warnOfSize(const TriangleMesh& mesh, SimplifyRun& run) {
+    if (!run.command.aim.maxErrorMm) return;
+    const auto warning = boundOverSize("--max-error", *run.command.aim.maxErrorMm,
+                                       norm(boundingBox(mesh).size()), baseName(run.input.file));
     if (warning) run.warnings.push_back(*warning);
 }
 
@@ -319,6 +326,7 @@ int runSimplify(const SimplifyCommand& command) {
                            ": its triangles have no area, so there is nothing to simplify");
     }
     requireProvable(input.mesh, command);
+    warnOfSize(input.mesh, run);
     const std::vector<PointData> data = run.stage("read", [&] { return readData(run); });
     const FrameChange change = chooseFrame(input, run);
     run.stage("check", [&] { check(input.mesh, run); });

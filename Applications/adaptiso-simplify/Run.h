@@ -39,7 +39,7 @@ struct Finding {
 bool isSound(const std::vector<Finding>& findings);
 
 /// The faults of a surface's topology.
-std::vector<Finding> findTopologyFaults(const TopologyReport& topology);
+std::vector<Finding> findTopologyFaults(const TriangleMesh& mesh, const TopologyReport& topology);
 
 /// Triangles that cross others. \param triangles  their numbers
 std::optional<Finding> crossingFinding(const TriangleMesh& mesh,

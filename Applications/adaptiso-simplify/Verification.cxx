@@ -24,8 +24,8 @@ std::int64_t eulerCharacteristic(const TopologyReport& topology) {
     return sum;
 }
 
-std::int64_t crossingPairs(const TriangleMesh& mesh) {
-    return findSelfIntersections(mesh, {.maxPairs = 0}).pairCount;
+SelfIntersections crossingPairs(const TriangleMesh& mesh) {
+    return findSelfIntersections(mesh, {.maxPairs = 0});
 }
 
 /// Nothing but open borders is wrong with it: pieces and handles mean something.
@@ -55,7 +55,8 @@ std::string topologyFault(const TopologyReport& before, const TopologyReport& to
 std::int64_t insideOutPieces(const TriangleMesh& mesh, const TopologyReport& topology) {
     const bool isTold =
         topology.isWatertight() && topology.count(TopologyDefect::NonFiniteVertex) == 0;
-    return isTold ? std::ssize(findInsideOutPieces(mesh, topology)) : 0;
+    const auto pieces = isTold ? findInsideOutPieces(mesh, topology) : std::nullopt;
+    return pieces ? std::ssize(*pieces) : 0;
 }
 
 /// The fault of a surface made from the run's input; empty if it is sound.
@@ -63,11 +64,11 @@ std::string soundnessFault(const VerifiedSurface& surface, const TriangleMesh& m
                            const TopologyReport& topology, const SimplifyRun& run) {
     std::string fault = topologyFault(run.input.topology, topology);
     if (!fault.empty()) return fault;
-    const std::int64_t pairs = crossingPairs(mesh);
-    const std::int64_t before = pairs == 0 ? 0 : crossingPairs(surface.input);
-    if (pairs > before) {
-        return formatCount(pairs) + " pairs of triangles cross, " + formatCount(before) +
-               " of the input";
+    const SelfIntersections pairs = crossingPairs(mesh);
+    const SelfIntersections before = pairs.isClear() ? pairs : crossingPairs(surface.input);
+    // of an input with more crossings than are counted there is nothing to compare with
+    if (before.isComplete && (!pairs.isComplete || pairs.pairCount > before.pairCount)) {
+        return crossingText(pairs) + ", " + formatCount(before.pairCount) + " of the input";
     }
     const std::int64_t pieces = insideOutPieces(mesh, topology);
     const std::int64_t inInput =

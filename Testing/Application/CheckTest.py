@@ -6,7 +6,7 @@ import re
 import subprocess
 
 from support import BAD_INPUT, BIN, USAGE, ball, main, write_4d_nifti, write_nifti
-from checkSupport import NAMES, README, CheckTest, outcome, together
+from checkSupport import NAMES, README, CheckTest, finding, outcome, together
 from headDefects import DEFECTS, cube, flipped, good, icosphere, with_handle
 
 
@@ -57,6 +57,36 @@ class Truth(CheckTest):
         few = self.surface(together(cube((0, 0, 0), (100, 100, 100)), bar), "--max-pairs", 1)
         self.assertEqual(few["selfIntersections"]["pairCount"], crossings["pairCount"])
         self.assertEqual(few["selfIntersections"]["pairs"], crossings["pairs"][:1])
+
+    def test_thousands_that_all_intersect_are_counted_up_to_a_limit(self):
+        """Triangles through one point, and one vertex of as many triangles that do not cross."""
+        points, triangles = [], []
+        for n in range(6000):
+            a, b = 2 * math.pi * n * 0.618034, math.acos(1 - 2 * ((n * 0.7548777) % 1))
+            u = (math.cos(a) * math.sin(b), math.sin(a) * math.sin(b), math.cos(b))
+            v = (-math.sin(a), math.cos(a), 0)
+            points += [tuple(50 * x for x in u), tuple(50 * x for x in v),
+                       tuple(-50 * (x + y) for x, y in zip(u, v))]
+            triangles.append((3 * n, 3 * n + 1, 3 * n + 2))
+        said = self.surface((points, triangles))
+        self.assertFalse(said["selfIntersections"]["isComplete"])
+        self.assertGreater(said["selfIntersections"]["pairCount"], 100000)
+        self.assertRegex(finding(said, "no self-intersection"),
+                         r"^more than [\d,]+00,000 pairs of triangles cross; first: triangles ")
+        self.assertIn("noSelfIntersections", said["failed"])
+
+        rim = [(50 * math.cos(2 * math.pi * n / 6000), 50 * math.sin(2 * math.pi * n / 6000), 0)
+               for n in range(6000)]
+        triangles = [t for n in range(6000)
+                     for t in ((0, 2 + n, 2 + (n + 1) % 6000), (1, 2 + (n + 1) % 6000, 2 + n))]
+        said = self.surface(([(0, 0, 50), (0, 0, -50)] + rim, triangles))
+        self.assertEqual((said["selfIntersections"], said["failed"]),
+                         ({"pairCount": 0, "isComplete": True, "pairs": []}, []))
+
+    def test_limits_as_large_as_the_surface_are_a_warning(self):
+        self.write("metres.off", icosphere(0.1))
+        said = self.check("metres.off", "--min-wall", 0.8)
+        self.assertIn("bound-over-size", [w["code"] for w in said["warnings"]])
 
     def test_touching_is_intersecting(self):
         base = cube((0, 0, 0), (100, 100, 100))

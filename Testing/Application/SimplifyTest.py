@@ -42,6 +42,17 @@ class Bounds(SimplifyTest):
             self.assertLess(abs(radius - 10), 0.2 + 0.02)
         self.assertEqual(len(lines), 2 + points + triangles)
 
+    def test_a_bound_as_large_as_the_surface_is_a_warning(self):
+        points, triangles = icosphere(0.1, 2)  # a head in metres
+        self.write("metres.off", (points, triangles))
+        report = self.simplify("metres.off", "--max-error", "0.2", "-o", "out.off")
+        self.assertEqual([w["code"] for w in report["warnings"]], ["bound-over-size"])
+        self.assertRegex(lines(report["warnings"])[0],
+                         r"^metres.off: --max-error of 0.2 mm is more than a tenth of the surface's "
+                         r"diagonal, 0\.3\d* mm; are its coordinates in mm\?$")
+        report = self.simplify("metres.off", "--max-error", "0.03", "-o", "out.off")
+        self.assertEqual(report["warnings"], [])
+
     def test_counts(self):
         self.write("ball.off", BALL)
         report = self.simplify("ball.off", "--triangles", "600", "-o", "a.vtp")
@@ -143,6 +154,23 @@ class Soundness(SimplifyTest):
         self.assertTrue(report["output"]["closed"])
         self.assertEqual(report["output"]["genus"], 0)
         self.assertEqual(self.check("out.vtp")["surfaces"][0]["failed"], [])
+
+    def test_two_triangles_that_face_opposite_sides_stay(self):
+        points, triangles = icosphere(10, 2)
+        a, b, _ = triangles[0]
+        tip = len(points)
+        self.write("flap.off", (points + [(15, 0, 0)],
+                                triangles + [(a, b, tip), (b, a, tip)]))
+        report = self.simplify("flap.off", "--max-error", "0.01", "-o", "out.off")
+        found = self.findings(report)
+        self.assertEqual(found["oppositeTriangles"], 1)
+        self.assertNotIn("duplicateTriangles", found)
+        self.assertIn("flap.off: 1 triangle on the corners of another, facing the other way, at ",
+                      "\n".join(lines(report["warnings"])))
+        for name in ("flap.off", "out.off"):
+            defects = self.check(name)["surfaces"][0]["defects"]
+            self.assertEqual((defects["boundaryEdge"], defects["inconsistentlyOrientedEdge"],
+                              defects["duplicateTriangle"]), (0, 0, 1), name)
 
     def test_a_triangle_without_area_that_lies_alone_is_dropped(self):
         points, triangles = icosphere(10, 2)

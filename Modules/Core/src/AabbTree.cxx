@@ -140,8 +140,9 @@ void AabbTree::improve(ClosestPoint& best, const Vec3& p, std::int64_t triangle)
     if (distance2 < best.squaredDistanceMm2) best = {triangle, distance2, nearest};
 }
 
-ClosestPoint AabbTree::closestPoint(const Vec3& p, std::int64_t hint) const {
+ClosestPoint AabbTree::closestPoint(const Vec3& p, std::int64_t hint, SearchEffort* effort) const {
     ClosestPoint best;
+    if (effort != nullptr) effort->isRough = false;
     if (order_.empty()) return best;
     if (hint >= 0) improve(best, p, hint);
     struct Candidate {
@@ -154,7 +155,14 @@ ClosestPoint AabbTree::closestPoint(const Vec3& p, std::int64_t hint) const {
     while (depth > 0) {
         const Candidate at = stack[--depth];
         if (at.squaredDistanceMm2 >= best.squaredDistanceMm2) continue;
+        if (effort != nullptr && effort->triangles <= 0 &&
+            at.squaredDistanceMm2 >=
+                SearchEffort::kRough * SearchEffort::kRough * best.squaredDistanceMm2) {
+            effort->isRough = true;
+            continue;
+        }
         if (at.subtree.isLeaf()) {
+            if (effort != nullptr) effort->triangles -= kLeafTriangles;
             const std::int64_t end = leafEnd(at.subtree.firstLeaf);
             for (std::int64_t n = leafBegin(at.subtree.firstLeaf); n < end; ++n) {
                 improve(best, p, order_[n]);

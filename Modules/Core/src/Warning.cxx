@@ -1,5 +1,7 @@
 #include "adaptiso/Core/Warning.h"
 
+#include "adaptiso/Core/Text.h"
+
 namespace adaptiso {
 namespace {
 
@@ -9,12 +11,14 @@ constexpr WarningCode kCodes[] = {
     {"attributes-left-out", "colours or numbers of an STL file's triangles were left out"},
     {"blended-labels", "an image that may hold labels was smoothed or resampled with blending"},
     {"bound-exceeded", "the format's digits take the file beyond the bound that was asked for"},
+    {"bound-over-size", "a bound in mm is more than a tenth of the surface's diagonal"},
     {"brain-doubtful", "a part of the brain may be missing, or muscle was taken for brain"},
     {"cap-moved-far", "electrodes were moved onto the skin by more than 10 mm on average"},
     {"colors-not-read", "a table of names has colours that cannot be read; the names were taken"},
     {"copies-left-out", "copies of files, compressed or exact, were left out"},
     {"count-missed", "the number of triangles asked for was not reached"},
     {"count-unset", "a surface's count is 0 or all ones; all that follow were read"},
+    {"distance-rough", "some distances are known to a hundredth only"},
     {"electrodes-left-out", "electrodes have no place in their file (n/a, NaN, empty)"},
     {"empty-slices",
      "a segmentation's frames have no neighbours; slices without a frame are empty"},
@@ -91,6 +95,17 @@ void addWarnings(std::vector<Warning>& warnings, std::span<const Warning> more,
         warnings.push_back(warning);
         if (warning.file.empty()) warnings.back().file = file;
     }
+}
+
+std::optional<Warning> boundOverSize(const std::string& name, double mm, double diagonalMm,
+                                     const std::string& file) {
+    constexpr double kLargestPart = 0.1;
+    if (!(diagonalMm > 0) || !(mm > kLargestPart * diagonalMm)) return std::nullopt;
+    return Warning{"bound-over-size",
+                   name + " of " + formatShort(mm) +
+                       " mm is more than a tenth of the surface's diagonal, " +
+                       formatShort(diagonalMm) + " mm; are its coordinates in mm?",
+                   file};
 }
 
 std::vector<std::string> linesOf(std::span<const Warning> warnings) {

@@ -8,7 +8,7 @@
 
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/NearestPlaces.h"
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/MeshSurface.h"
@@ -16,8 +16,6 @@
 
 namespace adaptiso {
 namespace {
-
-constexpr std::int64_t kPiece = 1 << 10;
 
 AdaptiveOptions aimsOf(const SimplifyOptions& options) {
     AdaptiveOptions aims;
@@ -47,15 +45,15 @@ std::vector<SurfacePoint> nearestPoints(const TriangleMesh& mesh, const Triangle
     if (onto.triangles.empty()) throw InvalidInput("nearestPoints: the surface has no triangle");
     const AabbTree tree(onto);
     std::vector<SurfacePoint> places(mesh.points.size());
-    parallelForPieces(std::ssize(places), kPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t v = begin; v < end; ++v) {
-            const ClosestPoint nearest = tree.closestPoint(mesh.points[v]);
+    findNearestPlaces(
+        onto, tree, std::ssize(places), [&](std::int64_t v) { return mesh.points[v]; },
+        [&](std::int64_t v, const ClosestPoint& nearest) {
             if (nearest.triangle < 0) {
                 throw InvalidInput("nearestPoints: a coordinate is not finite");
             }
             places[v] = surfacePointAt(nearest.pointMm, onto, nearest.triangle);
-        }
-    });
+        },
+        false);
     return places;
 }
 

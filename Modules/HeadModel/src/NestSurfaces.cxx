@@ -54,11 +54,10 @@ std::vector<Finding> findHopeless(const std::vector<TriangleMesh>& surfaces) {
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
         const TriangleMesh& surface = surfaces[n];
         const SelfIntersections crossings = findSelfIntersections(surface);
-        if (crossings.pairCount > 0) {
-            findings.push_back({"surface " + std::to_string(n) + ": " +
-                                    std::to_string(crossings.pairCount) +
-                                    " pairs of its triangles cross",
-                                surface.points[surface.triangles[crossings.pairs[0][0]][0]]});
+        if (!crossings.isClear()) {
+            const std::int64_t first = crossings.pairs.empty() ? 0 : crossings.pairs[0][0];
+            findings.push_back({"surface " + std::to_string(n) + ": " + crossingText(crossings),
+                                surface.points[surface.triangles[first][0]]});
         }
         if (n + 1 == surfaces.size()) break;
         const NestingReport report = checkNesting(surface, surfaces[n + 1]);

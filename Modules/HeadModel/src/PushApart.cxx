@@ -271,7 +271,7 @@ std::optional<Finding> pushApart(TriangleMesh& surface, const TriangleMesh& fixe
     for (int round = 0; round < kMaxRounds; ++round) {
         const Needs needs = findNeeds(surface, other, wanted);
         crossings = findSelfIntersections(surface);
-        if (needs.largestMm() <= kLackMet * options.minGapMm && crossings.pairCount == 0) {
+        if (needs.largestMm() <= kLackMet * options.minGapMm && crossings.isClear()) {
             return std::nullopt;
         }
         smoothWhereCrossing(crossings, surface, neighbours, moved);
@@ -290,7 +290,7 @@ std::optional<Finding> pushApart(TriangleMesh& surface, const TriangleMesh& fixe
                            start[v]};
         }
     }
-    if (crossings.pairCount > 0) {
+    if (!crossings.pairs.empty()) {
         return Finding{"it crosses itself when moved " + inMm(options.minGapMm) +
                            " away from the next surface",
                        surface.points[surface.triangles[crossings.pairs[0][0]][0]]};

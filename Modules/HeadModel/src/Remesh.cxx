@@ -279,9 +279,9 @@ Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options)
         vertices = startOver(*remesher, options.vertices, rounds, isAgain);
         result.mesh = finish(*remesher, vertices, options.fitMm);
         crossings = findSelfIntersections(result.mesh);
-        if (crossings.pairCount == 0) break;
+        if (crossings.isClear()) break;
     }
-    for (int n = 0; n < kMendings && crossings.pairCount > 0; ++n) {
+    for (int n = 0; n < kMendings && !crossings.isClear(); ++n) {
         target.setSizes(shorterWhereCrossing(target, *remesher, result.mesh, crossings));
         // from the surface again: a mesh that crosses itself lands on the wrong sheet, ever worse
         remesher.emplace(target);
@@ -289,11 +289,12 @@ Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options)
         result.mesh = finish(*remesher, vertices, options.fitMm);
         crossings = findSelfIntersections(result.mesh);
     }
-    if (crossings.pairCount > 0) {
-        result.findings.push_back({std::to_string(crossings.pairCount) +
-                                       " pairs of triangles cross at this number of vertices; ask "
-                                       "for more vertices or a smoother surface",
-                                   centreOf(result.mesh, crossings.pairs[0][0])});
+    if (!crossings.isClear()) {
+        const std::int64_t first = crossings.pairs.empty() ? 0 : crossings.pairs[0][0];
+        result.findings.push_back({crossingText(crossings) +
+                                       " at this number of vertices; ask for more vertices or a "
+                                       "smoother surface",
+                                   centreOf(result.mesh, first)});
     }
     if (std::ssize(result.mesh.points) != vertices) {
         result.findings.push_back({std::to_string(vertices) +

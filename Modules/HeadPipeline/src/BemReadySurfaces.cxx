@@ -102,7 +102,7 @@ Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model) {
     } else if (mesh.points.size() < vertices) {
         note(model, n, "unused vertices left out");
     }
-    if (findSelfIntersections(mesh, {.maxPairs = 0}).pairCount > 0) return Need::NewSolid;
+    if (!findSelfIntersections(mesh, {.maxPairs = 0}).isClear()) return Need::NewSolid;
     if (enclosedVolume(mesh) < 0) {
         flipOrientation(mesh);
         note(model, n, "was inside out and has been turned");

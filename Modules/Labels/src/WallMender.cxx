@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "adaptiso/MeshQuality/CrossingSearch.h"
-#include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -22,20 +21,6 @@ std::vector<Id> firstNumbers(Id count) {
     std::vector<Id> numbers(count);
     std::iota(numbers.begin(), numbers.end(), 0);
     return numbers;
-}
-
-/// Pairs of triangles that cross, of which one is asked for.
-std::vector<TrianglePair> crossingPairs(const TriangleView& mesh,
-                                        const std::vector<std::uint8_t>& isAsked) {
-    const CrossingSearch search(mesh);
-    std::vector<std::vector<TrianglePair>> found(search.pieceCount());
-    search.forEachPair([&](Id a, Id b) { return (isAsked[a] | isAsked[b]) != 0; },
-                       [&](std::int64_t piece, Id a, Id b) {
-                           found[piece].push_back({a, b});
-                       });
-    std::vector<TrianglePair> all;
-    for (const auto& own : found) all.insert(all.end(), own.begin(), own.end());
-    return all;
 }
 
 }  // namespace
@@ -116,16 +101,20 @@ void WallMender::findCrossings() {
         const auto& [a, b, c] = mesh_.triangle(t).v;
         triangles.push_back({number[a], number[b], number[c]});
     }
-    const auto pairs = crossingPairs({points, triangles}, areAsked);
+    const CrossingPairs crossing = findCrossingPairs(
+        {points, triangles}, [&](Id a, Id b) { return (areAsked[a] | areAsked[b]) != 0; });
     for (const Id t : asked) isClear_[t] = 1;
-    for (const TrianglePair& pair : pairs) {
-        for (const std::int64_t n : pair) {
-            const Id t = alive[n];
-            isClear_[t] = 0;
-            blame(t);
-            collapser_.tightenNear(t);
-        }
+    const auto undo = [&](Id n) {
+        const Id t = alive[n];
+        isClear_[t] = 0;
+        blame(t);
+        collapser_.tightenNear(t);
+    };
+    for (const auto& [a, b] : crossing.pairs) {
+        undo(a);
+        undo(b);
     }
+    for (const Id n : crossing.undecided) undo(n);
 }
 
 /// Triangles of the full walls that what they were near may have left are to be proved again.

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "TriangleGroups.h"
 #include "Triangles.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
@@ -63,7 +67,7 @@ double roundingIn(const BoundingBox& box) {
     return 1e-13 * (norm(box.maximum) + norm(box.minimum));
 }
 
-/// A piece's triangles that cross others, as they come.
+/// A piece's triangles, as they come.
 using OfPieces = std::vector<std::vector<std::int64_t>>;
 
 /// All of them, ascending, each once.
@@ -75,15 +79,12 @@ std::vector<std::int64_t> joined(const OfPieces& pieces) {
     return all;
 }
 
-/// \param isAsked  see CrossingSearch
-template <class IsAsked>
-std::vector<std::int64_t> crossingAmong(const TriangleView& mesh, const IsAsked& isAsked) {
-    const CrossingSearch search(mesh);
-    OfPieces ofPiece(search.pieceCount());
-    search.forEachPair(isAsked, [&](std::int64_t piece, std::uint32_t a, std::uint32_t b) {
-        ofPiece[piece].insert(ofPiece[piece].end(), {a, b});
-    });
-    return joined(ofPiece);
+/// Those of pairs, and those that are undecided: who keeps crossing triangles keeps them too.
+std::vector<std::int64_t> trianglesOf(const CrossingPairs& crossing) {
+    std::vector<std::int64_t> triangles(crossing.undecided.begin(), crossing.undecided.end());
+    for (const auto& pair : crossing.pairs)
+        triangles.insert(triangles.end(), pair.begin(), pair.end());
+    return joined({std::move(triangles)});
 }
 
 /// Triangles by their cells. Marching cubes makes those of a cell one after the other: nearly
@@ -175,8 +176,8 @@ std::vector<std::int64_t> crossingWithoutCells(const TriangleMesh& mesh,
     });
     const FiniteTriangles near(mesh, [&](std::int64_t t) { return isNear[t] != 0; });
     const auto isFree = [&](std::uint32_t t) { return cells[near.numbers[t]] == kNoCell; };
-    std::vector<std::int64_t> crossing = crossingAmong(
-        near.view(mesh), [&](std::uint32_t a, std::uint32_t b) { return isFree(a) || isFree(b); });
+    std::vector<std::int64_t> crossing = trianglesOf(findCrossingPairs(
+        near.view(mesh), [&](std::uint32_t a, std::uint32_t b) { return isFree(a) || isFree(b); }));
     for (std::int64_t& t : crossing) t = near.numbers[t];
     return crossing;
 }
@@ -190,20 +191,75 @@ void keepFirst(std::vector<TrianglePair>& pairs, std::int64_t count) {
 
 }  // namespace
 
-CrossingSearch::CrossingSearch(const TriangleView& mesh) : mesh_(mesh) {
-    parallelInvoke([&] { tree_ = TriangleTree(mesh); },
-                   [&] { fans_.emplace(mesh.points, mesh.triangles); });
-    gap_ = mesh.triangles.empty() ? 0 : roundingIn(mesh.box());
+namespace {
+
+/// Decides pairs of triangles.
+class PairTest {
+public:
+    explicit PairTest(const TriangleView& mesh)
+        : mesh_(mesh), gap_(roundingIn(mesh.box())), fans_(mesh.points, mesh.triangles) {}
+
+    bool cross(std::uint32_t a, std::uint32_t b) const {
+        const TriangleView::Triangle &s = mesh_.triangles[a], &t = mesh_.triangles[b];
+        return !fans_.areClear(s, t) && !areClear(mesh_.points, s, t, gap_, 0) &&
+               trianglesCross(mesh_.cornersOf(a), mesh_.cornersOf(b));
+    }
+
+private:
+    const TriangleView& mesh_;
+    double gap_;  ///< distance that rounding may hide
+    ClearFans fans_;
+};
+
+using IsMet = std::function<bool(std::uint32_t, std::uint32_t)>;
+
+/// The pairs whose boxes overlap; empty where these are too many.
+std::optional<CrossingPairs> findByBoxes(const TriangleView& mesh, const TriangleTree& tree,
+                                         const IsMet& isMet) {
+    constexpr std::int64_t kPiece = 128;  // leaves
+    // of a piece of 1,024 triangles; those of surfaces take a tenth
+    constexpr std::int64_t kMostTests = 256 * 1024, kMostLeaves = kMostTests;
+    const TriangleTree::Pairs near(tree, mesh);
+    std::vector<CrossingPairs> ofPiece((tree.leafCount() + kPiece - 1) / kPiece);
+    std::atomic<bool> areTooMany = false;
+    parallelForPieces(tree.leafCount(), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        CrossingPairs& found = ofPiece[begin / kPiece];
+        if (areTooMany) return;
+        const bool isWhole =
+            near.forEach(begin, end, kMostLeaves, [&](std::uint32_t a, std::uint32_t b) {
+                if (++found.tests <= kMostTests && isMet(a, b)) found.pairs.push_back({a, b});
+            });
+        if (!isWhole || found.tests > kMostTests) areTooMany = true;
+    });
+    if (areTooMany) return std::nullopt;
+    CrossingPairs all;
+    for (const CrossingPairs& piece : ofPiece) {
+        all.pairs.insert(all.pairs.end(), piece.pairs.begin(), piece.pairs.end());
+        all.tests += piece.tests;
+    }
+    return all;
 }
 
-bool CrossingSearch::cross(std::uint32_t a, std::uint32_t b) const {
-    const TriangleView::Triangle &s = mesh_.triangles[a], &t = mesh_.triangles[b];
-    return !fans_->areClear(s, t) && !areClear(mesh_.points, s, t, gap_, 0) &&
-           trianglesCross(mesh_.cornersOf(a), mesh_.cornersOf(b));
+}  // namespace
+
+CrossingPairs findCrossingPairs(const TriangleView& mesh, const IsMet& isAsked) {
+    if (mesh.triangles.empty()) return {};
+    TriangleTree tree;
+    std::optional<PairTest> test;
+    parallelInvoke([&] { tree = TriangleTree(mesh); }, [&] { test.emplace(mesh); });
+    const IsMet isMet = [&](std::uint32_t a, std::uint32_t b) {
+        return (!isAsked || isAsked(a, b)) && test->cross(a, b);
+    };
+    if (std::optional<CrossingPairs> found = findByBoxes(mesh, tree, isMet)) {
+        return *std::move(found);
+    }
+    tree = {};
+    TriangleGroups::Pairs found = TriangleGroups(mesh).findPairs(isMet);
+    return {std::move(found.pairs), std::move(found.undecided), found.tests};
 }
 
 std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh) {
-    return crossingAmong(mesh, [](std::uint32_t, std::uint32_t) { return true; });
+    return trianglesOf(findCrossingPairs(mesh));
 }
 
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
@@ -226,21 +282,14 @@ SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
                            std::to_string(options.maxPairs) + ", must be at least 0");
     }
     const FiniteTriangles finite(mesh);
-    const CrossingSearch search(finite.view(mesh));
-    std::vector<SelfIntersections> ofPiece(search.pieceCount());
-    search.forEachPair([&](std::int64_t piece, std::uint32_t a, std::uint32_t b) {
-        SelfIntersections& found = ofPiece[piece];
-        ++found.pairCount;
-        if (options.maxPairs == 0) return;
-        found.pairs.push_back({finite.numbers[a], finite.numbers[b]});
-        if (std::ssize(found.pairs) / 2 > options.maxPairs) {
-            keepFirst(found.pairs, options.maxPairs);
-        }
-    });
+    const CrossingPairs found = findCrossingPairs(finite.view(mesh));
     SelfIntersections result;
-    for (const SelfIntersections& piece : ofPiece) {
-        result.pairCount += piece.pairCount;
-        result.pairs.insert(result.pairs.end(), piece.pairs.begin(), piece.pairs.end());
+    result.pairCount = std::ssize(found.pairs);
+    result.isComplete = found.undecided.empty();
+    if (options.maxPairs == 0) return result;
+    result.pairs.reserve(found.pairs.size());
+    for (const auto& [a, b] : found.pairs) {
+        result.pairs.push_back({finite.numbers[a], finite.numbers[b]});
     }
     keepFirst(result.pairs, options.maxPairs);
     std::sort(result.pairs.begin(), result.pairs.end());

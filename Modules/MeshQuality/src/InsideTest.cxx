@@ -27,9 +27,10 @@ bool everyEdgeIsInTwo(const TriangleMesh& mesh) {
 
 /// True if the ray crosses an odd number of triangles; empty when `p` is on one.
 std::optional<bool> crossesOddly(const Vec3& p, const Ray& ray, const TriangleMesh& mesh,
-                                 const AabbTree& tree) {
+                                 const AabbTree& tree, std::int64_t* tests) {
     bool isOdd = false, isOn = false;
     tree.forEachOverlap(boxOf(p, ray), [&](std::int64_t triangle) {
+        if (tests != nullptr) ++*tests;
         const Hit found = hitOf(p, ray, cornersOf(mesh, triangle));
         isOn = isOn || found.isOn;
         isOdd = isOdd != found.crosses;
@@ -43,11 +44,11 @@ std::optional<bool> crossesOddly(const Vec3& p, const Ray& ray, const TriangleMe
 InsideTest::InsideTest(const TriangleMesh& mesh, const AabbTree& tree)
     : mesh_(&mesh), tree_(&tree), isClosed_(everyEdgeIsInTwo(mesh)) {}
 
-Side InsideTest::sideOf(const Vec3& p) const {
+Side InsideTest::sideOf(const Vec3& p, std::int64_t* tests) const {
     constexpr int kRays = 6, kMajority = 4;
     int inside = 0;
     for (int n = 0; n < kRays; ++n) {
-        const auto isOdd = crossesOddly(p, {n % 3, n < 3 ? 1 : -1}, *mesh_, *tree_);
+        const auto isOdd = crossesOddly(p, {n % 3, n < 3 ? 1 : -1}, *mesh_, *tree_, tests);
         if (!isOdd) return Side::On;
         if (isClosed_) return *isOdd ? Side::Inside : Side::Outside;
         inside += *isOdd ? 1 : 0;

@@ -1,22 +1,27 @@
 #include "adaptiso/MeshQuality/Nesting.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <string>
 
+#include "NumberedTriangles.h"
+#include "TriangleGroups.h"
 #include "Triangles.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
+#include "adaptiso/MeshQuality/NearestPlaces.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
 namespace {
 
 constexpr std::int64_t kGrain = 4096;
+constexpr std::int64_t kMostRayTests = 1 << 24;  // for each kGrain vertices
 
 /// The mesh with each triangle once, where all of it is there twice and so has no inside by the
 /// even-odd rule; none where it is not.
@@ -55,28 +60,87 @@ struct Surface {
     std::optional<AabbTree> singleTree;
     InsideTest inside;
     std::vector<std::uint8_t> meetsOther;  ///< by triangle
+
+    /// From any thread.
+    void mark(std::int64_t triangle) {
+        std::atomic_ref(meetsOther[triangle]).store(1, std::memory_order_relaxed);
+    }
 };
 
-/// Pairs of triangles that meet, ascending.
-std::vector<TrianglePair> findMeetingPairs(const Surface& inner, const Surface& outer) {
+/// Pairs of triangles that meet.
+struct Meetings {
+    std::int64_t count = 0;
+    std::vector<TrianglePair> pairs;  ///< the first of them, ascending
+    bool isComplete = true;
+
+    void add(const TrianglePair& pair, std::int64_t most) {
+        ++count;
+        pairs.push_back(pair);
+        if (std::ssize(pairs) > 2 * most) keepFirst(most);
+    }
+    void keepFirst(std::int64_t most) {
+        std::sort(pairs.begin(), pairs.end());
+        if (std::ssize(pairs) > most) pairs.resize(static_cast<std::size_t>(most));
+    }
+};
+
+/// By boxes. \return  empty where too many of these overlap
+std::optional<Meetings> findByBoxes(Surface& inner, Surface& outer, std::int64_t most) {
+    constexpr std::int64_t kMostTests = 256 * kGrain;  // of a piece
     const std::int64_t count = std::ssize(inner.mesh.triangles);
-    std::vector<std::vector<TrianglePair>> ofPiece((count + kGrain - 1) / kGrain);
+    std::vector<Meetings> ofPiece((count + kGrain - 1) / kGrain);
+    std::atomic<bool> areTooMany = false;
     parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-        std::vector<TrianglePair>& found = ofPiece[begin / kGrain];
-        for (std::int64_t n = begin; n < end; ++n) {
+        Meetings& found = ofPiece[begin / kGrain];
+        std::int64_t tests = 0;
+        for (std::int64_t n = begin; n < end && !areTooMany; ++n) {
             const Corners corners = cornersOf(inner.mesh, n);
             if (!areFinite(corners)) continue;
             outer.tree.forEachOverlap(inner.tree.triangleBox(n), [&](std::int64_t other) {
-                if (trianglesMeet(corners, cornersOf(outer.mesh, other))) {
-                    found.push_back({n, other});
-                }
+                if (++tests > kMostTests) return;
+                if (!trianglesMeet(corners, cornersOf(outer.mesh, other))) return;
+                found.add({n, other}, most);
+                inner.mark(n);
+                outer.mark(other);
             });
+            if (tests > kMostTests) areTooMany = true;
         }
     });
-    std::vector<TrianglePair> pairs;
-    for (const auto& piece : ofPiece) pairs.insert(pairs.end(), piece.begin(), piece.end());
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
+    if (areTooMany) return std::nullopt;
+    Meetings all;
+    for (Meetings& piece : ofPiece) {
+        all.count += piece.count;
+        all.pairs.insert(all.pairs.end(), piece.pairs.begin(), piece.pairs.end());
+    }
+    all.keepFirst(most);
+    return all;
+}
+
+/// By groups that planes tell apart, as many as their budget allows.
+Meetings findByGroups(Surface& inner, Surface& outer, std::int64_t most) {
+    const NumberedTriangles ours(inner.mesh), theirs(outer.mesh);
+    const TriangleView a = ours.view(), b = theirs.view();
+    TriangleGroups::Pairs found =
+        TriangleGroups(a).findPairs(TriangleGroups(b), 0, [&](std::uint32_t s, std::uint32_t t) {
+            return trianglesMeet(a.cornersOf(s), b.cornersOf(t));
+        });
+    Meetings meetings;
+    for (const auto& [s, t] : found.pairs) {
+        meetings.add({ours.numbers[s], theirs.numbers[t]}, most);
+        inner.mark(ours.numbers[s]);
+        outer.mark(theirs.numbers[t]);
+    }
+    for (const std::uint32_t s : found.undecided) inner.mark(ours.numbers[s]);
+    for (const std::uint32_t t : found.otherUndecided) outer.mark(theirs.numbers[t]);
+    meetings.keepFirst(most);
+    meetings.isComplete = found.undecided.empty() && found.otherUndecided.empty();
+    return meetings;
+}
+
+/// \param most  pairs to keep, at least one
+Meetings findMeetings(Surface& inner, Surface& outer, std::int64_t most) {
+    std::optional<Meetings> found = findByBoxes(inner, outer, most);
+    return found ? *std::move(found) : findByGroups(inner, outer, most);
 }
 
 /// For every vertex, one that stands for it: the smallest of those that hang together with it by
@@ -105,13 +169,20 @@ std::vector<VertexId> findSpokesmen(const Surface& surface, const Surface& other
 }
 
 /// The side of every vertex; of those not used, Outside.
+/// \param isComplete  becomes false where rays pass too many triangles: other sides are not known
 std::vector<Side> findSides(const Surface& surface, const Surface& other,
-                            const std::vector<VertexId>& spokesmen) {
+                            const std::vector<VertexId>& spokesmen, std::atomic<bool>& isComplete) {
     const std::int64_t count = std::ssize(spokesmen);
     std::vector<Side> sides(spokesmen.size(), Side::Outside);
     parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        std::int64_t tests = 0;
         for (VertexId v = begin; v < end; ++v) {
-            if (spokesmen[v] == v) sides[v] = other.inside.sideOf(surface.mesh.points[v]);
+            if (spokesmen[v] != v) continue;
+            if (tests > kMostRayTests) {
+                isComplete = false;
+                return;
+            }
+            sides[v] = other.inside.sideOf(surface.mesh.points[v], &tests);
         }
     });
     for (VertexId v = 0; v < count; ++v) {
@@ -142,18 +213,14 @@ SideCounts countSides(const std::vector<VertexId>& spokesmen, const std::vector<
 /// Distance of the farthest vertex that is used and not inside from the other surface.
 double farthestOutMm(const Surface& surface, const Surface& other,
                      const std::vector<VertexId>& spokesmen, const std::vector<Side>& sides) {
-    const std::int64_t count = std::ssize(sides);
-    std::vector<double> squared((count + kGrain - 1) / kGrain);
-    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-        double& farthest = squared[begin / kGrain];
-        std::int64_t hint = -1;
-        for (VertexId v = begin; v < end; ++v) {
-            if (spokesmen[v] < 0 || sides[v] == Side::Inside) continue;
-            const ClosestPoint nearest = other.tree.closestPoint(surface.mesh.points[v], hint);
-            farthest = std::max(farthest, nearest.squaredDistanceMm2);
-            hint = nearest.triangle;
-        }
-    });
+    std::vector<double> squared(sides.size());
+    findNearestPlaces(
+        other.mesh, other.tree, std::ssize(sides),
+        [&](VertexId v) -> std::optional<Vec3> {
+            if (spokesmen[v] < 0 || sides[v] == Side::Inside) return std::nullopt;
+            return surface.mesh.points[v];
+        },
+        [&](VertexId v, const ClosestPoint& nearest) { squared[v] = nearest.squaredDistanceMm2; });
     return squared.empty() ? 0 : std::sqrt(*std::max_element(squared.begin(), squared.end()));
 }
 
@@ -178,6 +245,7 @@ bool areIdentical(const TriangleMesh& a, const TriangleMesh& b) {
 NestingRelation relationOf(const NestingReport& report) {
     if (report.innerVertices == 0 || report.outerVertices == 0) return NestingRelation::Unknown;
     if (report.crossingPairs > 0) return NestingRelation::Crossing;
+    if (!report.isComplete || !report.areSidesKnown) return NestingRelation::Unknown;
     const bool noneIn = report.innerVerticesNotInside == report.innerVertices;
     if (report.innerVerticesNotInside == 0 && report.outerVerticesInside == 0) {
         return NestingRelation::Nested;
@@ -207,15 +275,14 @@ NestingReport checkNesting(const TriangleMesh& innerMesh, const TriangleMesh& ou
     requireIndices(outerMesh, "checkNesting: outer");
     Surface inner(innerMesh), outer(outerMesh);
     NestingReport report;
-    report.pairs = findMeetingPairs(inner, outer);
-    report.crossingPairs = std::ssize(report.pairs);
-    for (const auto& [a, b] : report.pairs) {
-        inner.meetsOther[a] = 1;
-        outer.meetsOther[b] = 1;
-    }
+    Meetings meetings = findMeetings(inner, outer, std::max<std::int64_t>(1, options.maxPairs));
+    report.pairs = std::move(meetings.pairs);
+    report.crossingPairs = meetings.count;
+    report.isComplete = meetings.isComplete;
 
+    std::atomic<bool> areSidesKnown = true;
     const std::vector<VertexId> innerSpokesmen = findSpokesmen(inner, outer);
-    const std::vector<Side> innerSides = findSides(inner, outer, innerSpokesmen);
+    const std::vector<Side> innerSides = findSides(inner, outer, innerSpokesmen, areSidesKnown);
     const SideCounts ofInner = countSides(innerSpokesmen, innerSides);
     report.innerVertices = ofInner.used;
     report.innerVerticesNotInside = ofInner.used - ofInner.inside;
@@ -223,10 +290,12 @@ NestingReport checkNesting(const TriangleMesh& innerMesh, const TriangleMesh& ou
     report.farthestOutMm = farthestOutMm(inner, outer, innerSpokesmen, innerSides);
 
     const std::vector<VertexId> outerSpokesmen = findSpokesmen(outer, inner);
-    const SideCounts ofOuter = countSides(outerSpokesmen, findSides(outer, inner, outerSpokesmen));
+    const SideCounts ofOuter =
+        countSides(outerSpokesmen, findSides(outer, inner, outerSpokesmen, areSidesKnown));
     report.outerVertices = ofOuter.used;
     report.outerVerticesInside = ofOuter.inside;
 
+    report.areSidesKnown = areSidesKnown;
     report.relation = relationOf(report);
     if (report.relation == NestingRelation::Crossing && areIdentical(innerMesh, outerMesh)) {
         report.relation = NestingRelation::Identical;
@@ -237,7 +306,7 @@ NestingReport checkNesting(const TriangleMesh& innerMesh, const TriangleMesh& ou
     } else if (report.relation != NestingRelation::Unknown) {
         report.gap = surfaceGap(innerMesh, inner.tree, outerMesh, outer.tree);
     }
-    if (report.crossingPairs > options.maxPairs) report.pairs.resize(options.maxPairs);
+    if (std::ssize(report.pairs) > options.maxPairs) report.pairs.resize(options.maxPairs);
     return report;
 }
 

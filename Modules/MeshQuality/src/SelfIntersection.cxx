@@ -5,6 +5,7 @@
 
 #include "Triangles.h"
 #include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -123,6 +124,21 @@ bool trianglesCross(const Corners& a, const Corners& b) {
     }
     // Only the few that seem to cross are asked whether they are triangles at all.
     return cross && axisWithArea(a) >= 0 && axisWithArea(b) >= 0;
+}
+
+std::string pairsText(std::int64_t found, bool isComplete) {
+    if (isComplete) return formatCount(found) + (found == 1 ? " pair" : " pairs");
+    if (found <= 1) return "at least " + formatCount(found) + " pair";
+    std::int64_t step = 1;  // two digits tell enough
+    while (found - 1 >= 100 * step) step *= 10;
+    return "more than " + formatCount((found - 1) / step * step) + " pairs";
+}
+
+std::string crossingText(const SelfIntersections& crossings) {
+    if (crossings.pairCount == 0 && !crossings.isComplete) {
+        return "not decided: hundreds of triangles lie near each one, more than are tested";
+    }
+    return pairsText(crossings.pairCount, crossings.isComplete) + " of triangles cross";
 }
 
 bool trianglesMeet(const Corners& a, const Corners& b) {

@@ -3,24 +3,27 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
 
+#include "NumberedTriangles.h"
+#include "TriangleGroups.h"
 #include "Triangles.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/NearestPlaces.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso {
 
 namespace {
-
-constexpr std::int64_t kGrain = 4096;
 
 /// \throws InvalidInput when the mesh is no surface to measure
 void requireMeasurable(const TriangleMesh& mesh, std::string_view name) {
@@ -104,6 +107,7 @@ struct Measurements {
     std::vector<double> distancesMm;
     std::vector<double> deviationsDeg;
     Farthest farthest;
+    std::int64_t rough = 0;  ///< distances that may be a hundredth too large
 };
 
 Vec3 triangleNormal(const TriangleMesh& mesh, std::int64_t triangle) {
@@ -120,50 +124,38 @@ void measureSamples(const TriangleMesh& from, const TriangleMesh& to, const Aabb
     const SurfaceSampler sampler(from, samples);
     result.distancesMm.resize(samples);
     result.deviationsDeg.resize(samples);
-    parallelForPieces(samples, kGrain, [&](std::int64_t begin, std::int64_t end) {
-        std::int64_t hint = -1;  // neighbours among the samples are neighbours in space
-        for (std::int64_t n = begin; n < end; ++n) {
-            const SurfacePoint sample = sampler.at(n);
-            const ClosestPoint nearest = tree.closestPoint(sample.pointMm, hint);
+    result.rough += findNearestPlaces(
+        to, tree, samples, [&](std::int64_t n) { return sampler.at(n).pointMm; },
+        [&](std::int64_t n, const ClosestPoint& nearest) {
             result.distancesMm[n] = std::sqrt(nearest.squaredDistanceMm2);
-            result.deviationsDeg[n] = angleDeg(triangleNormal(from, sample.triangle),
+            result.deviationsDeg[n] = angleDeg(triangleNormal(from, sampler.at(n).triangle),
                                                triangleNormal(to, nearest.triangle));
-            hint = nearest.triangle;
-        }
-    });
+        });
     const auto largest = std::max_element(result.distancesMm.begin(), result.distancesMm.end());
     result.farthest = {*largest, sampler.at(largest - result.distancesMm.begin()).pointMm};
 }
 
 /// The vertex farthest away; the first of several.
-Farthest farthestVertex(const TriangleMesh& from, const AabbTree& tree) {
+Farthest farthestVertex(const TriangleMesh& from, const TriangleMesh& to, const AabbTree& tree,
+                        std::int64_t& rough) {
     std::vector<bool> isUsed(from.points.size());
     for (const Triangle& t : from.triangles) {
         for (const VertexId v : t) isUsed[v] = true;
     }
-    const auto count = static_cast<std::int64_t>(from.points.size());
-    std::vector<Farthest> ofPiece((count + kGrain - 1) / kGrain);
-    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-        Farthest& farthest = ofPiece[begin / kGrain];
-        std::int64_t hint = -1;
-        for (VertexId v = begin; v < end; ++v) {
-            if (!isUsed[v]) continue;
-            const ClosestPoint nearest = tree.closestPoint(from.points[v], hint);
-            hint = nearest.triangle;
-            const double distanceMm = std::sqrt(nearest.squaredDistanceMm2);
-            if (distanceMm > farthest.distanceMm) farthest = {distanceMm, from.points[v]};
-        }
-    });
-    return *std::max_element(
-        ofPiece.begin(), ofPiece.end(),
-        [](const Farthest& l, const Farthest& r) { return l.distanceMm < r.distanceMm; });
+    std::vector<double> squared(from.points.size());
+    rough += findNearestPlaces(
+        to, tree, std::ssize(from.points),
+        [&](VertexId v) { return isUsed[v] ? std::optional(from.points[v]) : std::nullopt; },
+        [&](VertexId v, const ClosestPoint& nearest) { squared[v] = nearest.squaredDistanceMm2; });
+    const auto farthest = std::max_element(squared.begin(), squared.end());
+    return {std::sqrt(*farthest), from.points[farthest - squared.begin()]};
 }
 
 Measurements measure(const TriangleMesh& from, const TriangleMesh& to, std::int64_t samples) {
     const AabbTree tree(to);
     Measurements result;
     measureSamples(from, to, tree, samples, result);
-    const Farthest vertex = farthestVertex(from, tree);
+    const Farthest vertex = farthestVertex(from, to, tree, result.rough);
     if (vertex.distanceMm > result.farthest.distanceMm) result.farthest = vertex;
     return result;
 }
@@ -194,6 +186,7 @@ DistanceStatistics summarize(Measurements& measurements) {
     result.rmsMm = std::sqrt(squares / static_cast<double>(distances.size()));
     result.p95Mm = percentile(distances, 0.95);
     result.p99Mm = percentile(distances, 0.99);
+    result.rough = measurements.rough;
     result.maxMm = measurements.farthest.distanceMm;
     result.maxPointMm = measurements.farthest.pointMm;
     result.meanNormalDeviationDeg = mean(measurements.deviationsDeg);
@@ -205,6 +198,7 @@ void append(Measurements& all, const Measurements& more) {
     all.distancesMm.insert(all.distancesMm.end(), more.distancesMm.begin(), more.distancesMm.end());
     all.deviationsDeg.insert(all.deviationsDeg.end(), more.deviationsDeg.begin(),
                              more.deviationsDeg.end());
+    all.rough += more.rough;
     if (more.farthest.distanceMm > all.farthest.distanceMm) all.farthest = more.farthest;
 }
 
@@ -244,14 +238,11 @@ double measuringErrorMm(const TriangleMesh& mesh) {
 std::vector<double> vertexDistancesMm(const TriangleMesh& from, const TriangleMesh& to) {
     const AabbTree tree(to);
     std::vector<double> distances(from.points.size());
-    parallelForPieces(std::ssize(from.points), kGrain, [&](std::int64_t begin, std::int64_t end) {
-        std::int64_t hint = -1;
-        for (std::int64_t v = begin; v < end; ++v) {
-            const ClosestPoint nearest = tree.closestPoint(from.points[v], hint);
+    findNearestPlaces(
+        to, tree, std::ssize(from.points), [&](VertexId v) { return from.points[v]; },
+        [&](VertexId v, const ClosestPoint& nearest) {
             distances[v] = std::sqrt(nearest.squaredDistanceMm2);
-            hint = nearest.triangle;
-        }
-    });
+        });
     return distances;
 }
 
@@ -352,21 +343,6 @@ bool areFartherThan(double squaredReach, const Corners& a, const Corners& b) {
     return isSlabThicker(support(b, -across) - support(a, across), a, b, squaredReach);
 }
 
-/// The smallest squared distance that any thread has found.
-class SharedReach {
-public:
-    explicit SharedReach(double squared) : squared_(squared) {}
-    double squared() const { return squared_.load(std::memory_order_relaxed); }
-    void shrinkTo(double squared) {
-        double seen = squared_.load();
-        while (squared < seen && !squared_.compare_exchange_weak(seen, squared)) {
-        }
-    }
-
-private:
-    std::atomic<double> squared_;
-};
-
 /// A reach to begin with: the smallest distance of some vertices of `a` to `b`.
 double firstReach(const TriangleMesh& a, const AabbTree& treeB) {
     constexpr std::int64_t kProbes = 512;
@@ -415,19 +391,30 @@ NearestPoints triangleDistance(const Corners& a, const Corners& b) {
     return {std::sqrt(best.squared), best.a, best.b};
 }
 
-SurfaceGap surfaceGap(const TriangleMesh& a, const AabbTree& treeA, const TriangleMesh& b,
-                      const AabbTree& treeB) {
-    SharedReach reach(firstReach(a, treeB));
+namespace {
+
+/// The nearest of pairs that boxes do not tell from it. \return empty where these are too many
+std::optional<GapCandidate> nearestByBoxes(const TriangleMesh& a, const AabbTree& treeA,
+                                           const TriangleMesh& b, const AabbTree& treeB,
+                                           double reach) {
+    constexpr std::int64_t kMost = 512 * kGapGrain;  // pairs to look at, of a piece
     // neighbours in the tree's order are asked for together
     const std::span<const std::int64_t> triangles = treeA.triangles();
-    const std::int64_t count = std::ssize(triangles);
-    std::vector<GapCandidate> ofPiece((count + kGapGrain - 1) / kGapGrain);
-    const auto slackReach = [&] { return reach.squared() * kSlack; };
-    parallelForPieces(count, kGapGrain, [&](std::int64_t begin, std::int64_t end) {
-        GapCandidate& best = ofPiece[begin / kGapGrain];
-        for (std::int64_t i = begin; i < end; i += kGroup) {
+    const std::int64_t pieces = (std::ssize(triangles) + kGapGrain - 1) / kGapGrain;
+    std::vector<GapCandidate> ofPiece(static_cast<std::size_t>(pieces));
+    std::atomic<bool> areTooMany = false;
+    const auto search = [&](std::int64_t piece) {
+        GapCandidate best;
+        std::int64_t looks = 0;
+        const std::int64_t begin = piece * kGapGrain,
+                           end = std::min(begin + kGapGrain, std::ssize(triangles));
+        const auto slackReach = [&] {
+            return looks > kMost ? -1 : kSlack * std::min(reach, best.squared);
+        };
+        for (std::int64_t i = begin; i < end && looks <= kMost && !areTooMany; i += kGroup) {
             const Group group(a, treeA, triangles.subspan(i, std::min(kGroup, end - i)));
             treeB.forEachNear(group.box, slackReach, [&](std::int64_t other) {
+                looks += group.count;
                 const Corners others = cornersOf(b, other);
                 for (std::int64_t n = 0; n < group.count; ++n) {
                     const Corners& corners = group.corners[n];
@@ -435,15 +422,62 @@ SurfaceGap surfaceGap(const TriangleMesh& a, const AabbTree& treeA, const Triang
                     const double squared =
                         trianglesMeet(corners, others) ? 0 : nearestPoints(corners, others).squared;
                     best = std::min(best, {squared, group.triangles[n], other});
-                    reach.shrinkTo(squared);
                 }
             });
         }
-    });
+        if (looks > kMost) areTooMany = true;
+        ofPiece[piece] = best;
+    };
+    // pieces learn from the rounds before alone, so that what they look at depends on no thread
+    for (std::int64_t begin = 0, size = 1; begin < pieces; begin += size, size *= 2) {
+        const std::int64_t count = std::min(size, pieces - begin);
+        parallelForPieces(count, 1, [&](std::int64_t n, std::int64_t) { search(begin + n); });
+        if (areTooMany) return std::nullopt;
+        for (std::int64_t n = begin; n < begin + count; ++n) {
+            reach = std::min(reach, ofPiece[n].squared);
+        }
+    }
     const auto best = std::min_element(ofPiece.begin(), ofPiece.end());
-    if (best == ofPiece.end() || best->triangleA < 0) return {};
-    return {triangleDistance(cornersOf(a, best->triangleA), cornersOf(b, best->triangleB)),
-            best->triangleA, best->triangleB};
+    return best == ofPiece.end() ? GapCandidate{} : *best;
+}
+
+/// The same by groups that planes tell apart.
+/// \param isComplete  becomes false where these are more than their budget allows
+GapCandidate nearestByGroups(const TriangleMesh& a, const TriangleMesh& b, double reach,
+                             bool& isComplete) {
+    const NumberedTriangles ours(a), theirs(b);
+    const TriangleView viewA = ours.view(), viewB = theirs.view();
+    GapCandidate best;
+    std::mutex guard;
+    const auto look = [&](std::uint32_t s, std::uint32_t t) {
+        const Corners corners = viewA.cornersOf(s), others = viewB.cornersOf(t);
+        if (areFartherThan(kSlack * reach, corners, others)) return false;
+        const double squared =
+            trianglesMeet(corners, others) ? 0 : nearestPoints(corners, others).squared;
+        const std::lock_guard lock(guard);
+        best = std::min(best, {squared, ours.numbers[s], theirs.numbers[t]});
+        return false;
+    };
+    const TriangleGroups::Pairs found =
+        TriangleGroups(viewA, false)
+            .findPairs(TriangleGroups(viewB, false), kSlack * std::sqrt(reach), look);
+    isComplete = found.undecided.empty() && found.otherUndecided.empty();
+    return best;
+}
+
+}  // namespace
+
+SurfaceGap surfaceGap(const TriangleMesh& a, const AabbTree& treeA, const TriangleMesh& b,
+                      const AabbTree& treeB) {
+    const double reach = firstReach(a, treeB);
+    SurfaceGap gap;
+    std::optional<GapCandidate> best = nearestByBoxes(a, treeA, b, treeB, reach);
+    if (!best) best = nearestByGroups(a, b, reach, gap.isComplete);
+    if (best->triangleA < 0) return gap;
+    gap.nearest = triangleDistance(cornersOf(a, best->triangleA), cornersOf(b, best->triangleB));
+    gap.triangleA = best->triangleA;
+    gap.triangleB = best->triangleB;
+    return gap;
 }
 
 }  // namespace adaptiso

@@ -1,16 +1,19 @@
 #include "adaptiso/MeshQuality/Winding.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
+#include <span>
+#include <utility>
 
 #include "Triangles.h"
-#include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
-#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/CrossingSearch.h"
 
 namespace adaptiso {
 namespace {
@@ -19,18 +22,24 @@ constexpr std::uint32_t kNone = 0xFFFFFFFF, kLeftOut = kNone - 1;
 /// Relative to a piece's area to the power 1.5: a smaller volume may be rounding.
 constexpr double kFlatPiece = 1e-9;
 constexpr std::int64_t kGrain = 4096;
+/// Of a ray and a triangle for each kGrain triangles: thousands of pieces in each other.
+constexpr std::int64_t kMostTests = 1 << 24, kUnlimited = std::numeric_limits<std::int64_t>::max();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// For each start pieces, ascending.
+using PiecesAround = std::vector<std::vector<std::uint32_t>>;
 
 /// For each start the pieces that lie around it, ascending: those that a ray from it passes an odd
 /// number of times. Rays are found by the cells of a grid across them.
 /// \param pieceOf  of a triangle; kNone: it is not there
 /// \param matters  of a start and a piece: whether to look at it
+/// \param mostTests  of a ray and a triangle, for each kGrain triangles
+/// \return  empty where there would be more
 template <class CornersOf, class PieceOf, class Matters>
-std::vector<std::vector<std::uint32_t>> piecesAround(const std::vector<Vec3>& starts,
-                                                     std::int64_t triangleCount,
-                                                     const CornersOf& cornersAt,
-                                                     const PieceOf& pieceOf,
-                                                     const Matters& matters) {
+std::optional<PiecesAround> piecesAround(const std::vector<Vec3>& starts,
+                                         std::int64_t triangleCount, const CornersOf& cornersAt,
+                                         const PieceOf& pieceOf, const Matters& matters,
+                                         std::int64_t mostTests = kUnlimited) {
     constexpr Ray kRay{0, 1};
     BoundingBox box = BoundingBox::empty();
     for (const Vec3& p : starts) box.add(p);
@@ -51,8 +60,10 @@ std::vector<std::vector<std::uint32_t>> piecesAround(const std::vector<Vec3>& st
         auto operator<=>(const Passed&) const = default;
     };
     std::vector<std::vector<Passed>> ofGrain((triangleCount + kGrain - 1) / kGrain);
+    std::atomic<bool> areTooMany = false;
     parallelForPieces(triangleCount, kGrain, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t t = begin; t < end; ++t) {
+        std::int64_t tests = 0;
+        for (std::int64_t t = begin; t < end && !areTooMany; ++t) {
             const std::uint32_t piece = pieceOf(t);
             if (piece == kNone) continue;
             const Corners corners = cornersAt(t);
@@ -62,7 +73,13 @@ std::vector<std::vector<std::uint32_t>> piecesAround(const std::vector<Vec3>& st
             for (std::size_t z = cellAt(around.minimum, 2); z <= cellAt(around.maximum, 2); ++z) {
                 const auto first = side * z + cellAt(around.minimum, 1),
                            last = side * z + cellAt(around.maximum, 1);
-                for (const std::uint32_t ray : rays.of(first, last + 1)) {
+                const std::span<const std::uint32_t> beside = rays.of(first, last + 1);
+                tests += std::ssize(beside);
+                if (tests > mostTests) {
+                    areTooMany = true;
+                    return;
+                }
+                for (const std::uint32_t ray : beside) {
                     if (!around.overlaps(boxOf(starts[ray], kRay)) || !matters(ray, piece))
                         continue;
                     if (!hitOf(starts[ray], kRay, corners).crosses) continue;
@@ -71,10 +88,11 @@ std::vector<std::vector<std::uint32_t>> piecesAround(const std::vector<Vec3>& st
             }
         }
     });
+    if (areTooMany) return std::nullopt;
     std::vector<Passed> passed;
     for (const auto& some : ofGrain) passed.insert(passed.end(), some.begin(), some.end());
     std::sort(passed.begin(), passed.end());
-    std::vector<std::vector<std::uint32_t>> around(starts.size());
+    PiecesAround around(starts.size());
     for (const auto& [ray, piece] : passed) {
         std::vector<std::uint32_t>& pieces = around[ray];
         if (pieces.empty() || pieces.back() != piece) {
@@ -86,54 +104,50 @@ std::vector<std::vector<std::uint32_t>> piecesAround(const std::vector<Vec3>& st
     return around;
 }
 
-/// Takes those away that cross the piece itself: of two that cross neither lies in the other.
-class CrossingPieces {
-public:
-    CrossingPieces(const TriangleMesh& mesh, const std::vector<std::uint32_t>& pieceOf,
-                   std::size_t pieces)
-        : mesh_(mesh),
-          pieceOf_(pieceOf),
-          triangles_(pieces,
-                     [&](const auto& give) {
-                         for (std::int64_t t = 0; t < std::ssize(mesh.triangles); ++t) {
-                             give(pieceOf[mesh.triangles[t][0]], t);
-                         }
-                     }),
-          tree_(mesh) {}
-
-    void takeFrom(std::vector<std::uint32_t>& others, std::size_t piece) const {
-        for (const std::int64_t t : triangles_.of(piece)) {
-            if (others.empty()) return;
-            tree_.forEachOverlap(tree_.triangleBox(t), [&](std::int64_t with) {
-                const auto other =
-                    std::find(others.begin(), others.end(), pieceOf_[mesh_.triangles[with][0]]);
-                if (other == others.end()) return;
-                if (trianglesCross(cornersOf(mesh_, t), cornersOf(mesh_, with)))
-                    others.erase(other);
-            });
+/// Takes from the pieces around each those that cross it: of two that cross neither lies in the
+/// other. \return  false where crossings are not all known
+bool takeCrossing(const TriangleMesh& mesh, const std::vector<std::uint32_t>& pieceOf,
+                  PiecesAround& around) {
+    // of larger pieces only what is near
+    BoundingBox near = BoundingBox::empty();
+    for (const Triangle& t : mesh.triangles) {
+        if (around[pieceOf[t[0]]].empty()) continue;
+        for (const VertexId v : t) near.add(mesh.points[v]);
+    }
+    std::vector<TriangleView::Triangle> triangles;
+    for (std::int64_t n = 0; n < std::ssize(mesh.triangles); ++n) {
+        if (!boxOf(cornersOf(mesh, n)).overlaps(near)) continue;
+        const auto& [a, b, c] = mesh.triangles[n];
+        triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                             static_cast<std::uint32_t>(c)});
+    }
+    const auto pieceAt = [&](std::uint32_t t) { return pieceOf[triangles[t][0]]; };
+    const CrossingPairs crossing = findCrossingPairs(
+        {mesh.points, triangles},
+        [&](std::uint32_t a, std::uint32_t b) { return pieceAt(a) != pieceAt(b); });
+    for (const auto& [a, b] : crossing.pairs) {
+        for (const auto& [piece, other] : {std::pair(a, b), std::pair(b, a)}) {
+            std::vector<std::uint32_t>& others = around[pieceAt(piece)];
+            const auto found = std::lower_bound(others.begin(), others.end(), pieceAt(other));
+            if (found != others.end() && *found == pieceAt(other)) others.erase(found);
         }
     }
-
-private:
-    const TriangleMesh& mesh_;
-    const std::vector<std::uint32_t>& pieceOf_;  ///< of each vertex
-    Buckets<std::int64_t> triangles_;            ///< of each piece
-    AabbTree tree_;
-};
+    return crossing.undecided.empty();
+}
 
 }  // namespace
 
 std::vector<std::vector<std::uint32_t>> findPiecesAround(
     const TriangleMesh& mesh, const std::vector<std::int64_t>& pieceOf,
     const std::vector<Vec3>& points, const std::function<bool(std::size_t, std::size_t)>& matters) {
-    return piecesAround(
+    return *piecesAround(
         points, std::ssize(mesh.triangles), [&](std::int64_t t) { return cornersOf(mesh, t); },
         [&](std::int64_t t) { return static_cast<std::uint32_t>(pieceOf[mesh.triangles[t][0]]); },
         matters);
 }
 
-std::vector<std::int64_t> findInsideOutPieces(const TriangleMesh& mesh,
-                                              const TopologyReport& topology) {
+std::optional<std::vector<std::int64_t>> findInsideOutPieces(const TriangleMesh& mesh,
+                                                             const TopologyReport& topology) {
     if (!topology.isWatertight() || topology.count(TopologyDefect::NonFiniteVertex) > 0) {
         throw InvalidInput(
             "findInsideOutPieces: the mesh must be closed, manifold, oriented and finite");
@@ -152,15 +166,14 @@ std::vector<std::int64_t> findInsideOutPieces(const TriangleMesh& mesh,
         for (std::size_t v = 0; v < roots.size(); ++v) pieceOf[v] = pieceOf[roots[v]];
         auto around = piecesAround(
             starts, std::ssize(mesh.triangles), [&](std::int64_t t) { return cornersOf(mesh, t); },
-            [&](std::int64_t t) { return pieceOf[mesh.triangles[t][0]]; }, std::not_equal_to<>());
-        const bool mayCross = std::any_of(around.begin(), around.end(),
+            [&](std::int64_t t) { return pieceOf[mesh.triangles[t][0]]; }, std::not_equal_to<>(),
+            kMostTests);
+        if (!around) return std::nullopt;
+        const bool mayCross = std::any_of(around->begin(), around->end(),
                                           [](const auto& pieces) { return !pieces.empty(); });
-        if (mayCross) {
-            const CrossingPieces crossing(mesh, pieceOf, count);
-            parallelForPieces(std::ssize(around), 1, [&](std::int64_t n, std::int64_t) {
-                crossing.takeFrom(around[n], static_cast<std::size_t>(n));
-                isCavity[n] = static_cast<std::uint8_t>(around[n].size() % 2);
-            });
+        if (mayCross && !takeCrossing(mesh, pieceOf, *around)) return std::nullopt;
+        for (std::size_t n = 0; n < count; ++n) {
+            isCavity[n] = static_cast<std::uint8_t>((*around)[n].size() % 2);
         }
     }
     std::vector<std::int64_t> insideOut;
@@ -205,7 +218,7 @@ InsideOutPieces findInsideOutPieces(const TriangleView& surface,
         volume6[piece] += dot(a - starts[piece], area);
         area2[piece] += norm(area);
     }
-    const auto around = piecesAround(
+    const PiecesAround around = *piecesAround(
         starts, std::ssize(surface.triangles),
         [&](std::int64_t t) { return surface.cornersOf(static_cast<std::size_t>(t)); }, pieceAt,
         std::not_equal_to<>());

@@ -129,8 +129,8 @@ Json componentsJson(const SurfaceFacts& facts) {
     return list;
 }
 
-Json pairsJson(std::int64_t count, const std::vector<TrianglePair>& pairs) {
-    return {{"pairCount", count}, {"pairs", pairs}};
+Json pairsJson(std::int64_t count, bool isComplete, const std::vector<TrianglePair>& pairs) {
+    return {{"pairCount", count}, {"isComplete", isComplete}, {"pairs", pairs}};
 }
 
 Json spreadJson(const Spread& spread) {
@@ -199,7 +199,8 @@ Json factsJson(const SurfaceFacts& facts) {
         {"componentCount", topology.components.size()},
         {"components", componentsJson(facts)},
         {"componentsInsideOut", orNull(facts.insideOut)},
-        {"selfIntersections", pairsJson(facts.intersections.pairCount, facts.intersections.pairs)},
+        {"selfIntersections", pairsJson(facts.intersections.pairCount,
+                                        facts.intersections.isComplete, facts.intersections.pairs)},
         {"shape",
          {{"triangles", facts.shape.triangles},
           {"minAngleDeg", spreadJson(facts.shape.minAngleDeg)},
@@ -211,7 +212,7 @@ Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
                  const AffineTransform& toFrame) {
     Json json = verdictJson(checks);
     json["relation"] = toString(report.relation);
-    json["crossings"] = pairsJson(report.crossingPairs, report.pairs);
+    json["crossings"] = pairsJson(report.crossingPairs, report.isComplete, report.pairs);
     json["innerVertices"] = report.innerVertices;
     json["innerVerticesNotInside"] = report.innerVerticesNotInside;
     json["firstNotInside"] =

@@ -214,6 +214,13 @@ private:
     }
 
     void judgeOutward() {
+        if (!facts_.insideOut && facts_.topology.isWatertight() &&
+            facts_.topology.count(TopologyDefect::NonFiniteVertex) == 0) {
+            return add(kOutward, false,
+                       "not decided: too many of " +
+                           formatCount(std::ssize(facts_.topology.components)) +
+                           " components lie beside, within or across each other");
+        }
         if (!facts_.insideOut) {
             return add(kOutward, Outcome::Undecided,
                        "only a closed, manifold, oriented and finite surface has an outside");
@@ -300,8 +307,7 @@ private:
             where = "; first: triangles " + std::to_string(a) + " and " + std::to_string(b) +
                     " near " + at(facts_.firstCrossingMm);
         }
-        addUnless(kCrossings, crossings.pairCount > 0,
-                  counted(crossings.pairCount, "pair", "pairs") + " of triangles cross" + where);
+        addUnless(kCrossings, !crossings.isClear(), crossingText(crossings) + where);
     }
 
     void judgeMeasures() {
@@ -400,8 +406,9 @@ std::string relationText(const NestingReport& report, const std::string& inner,
         case NestingRelation::Nested:
             return "";
         case NestingRelation::Crossing:
-            return report.innerVerticesNotInside > 0
-                       ? outsideText(report, inner, outer)
+            return report.innerVerticesNotInside > 0 ? outsideText(report, inner, outer)
+                   : !report.areSidesKnown
+                       ? "not decided: more triangles lie beside their vertices than are tested"
                        : "all vertices of " + inner + " are inside " + outer +
                              ": a dent of that, or an edge between vertices, goes through";
         case NestingRelation::Swapped:
@@ -416,7 +423,9 @@ std::string relationText(const NestingReport& report, const std::string& inner,
                    counted(report.outerVerticesInside, "vertex", "vertices") + " of " + outer +
                    (report.outerVerticesInside == 1 ? " lies" : " lie") + " inside " + inner;
         case NestingRelation::Unknown:
-            return "a surface has no triangle to measure";
+            return report.innerVertices == 0 || report.outerVertices == 0
+                       ? "a surface has no triangle to measure"
+                       : "not decided: too many triangles lie beside each other";
     }
     throw InternalError("relationText: unknown relation");
 }
@@ -474,23 +483,30 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
                                   outer;
     const bool meet = report.crossingPairs > 0;
     const bool areIdentical = report.relation == NestingRelation::Identical;
-    add(kNoCrossing, !meet,
+    constexpr const char* kNotDecided =
+        "not decided: hundreds of triangles lie near each one, more than are tested";
+    add(kNoCrossing, !meet && report.isComplete,
         areIdentical ? "they lie on each other everywhere"
-        : meet       ? counted(report.crossingPairs, "pair", "pairs") +
+        : meet       ? pairsText(report.crossingPairs, report.isComplete) +
                      " of triangles cross or touch; first: " + triangles + where
-               : "");
+        : report.isComplete ? ""
+                            : kNotDecided);
     add(kNested, report.isStrictlyNested(), relationText(report, inner, outer));
     if (report.gap.triangleA < 0) {
         checks.push_back(
             makeCheck(kMinGap, Outcome::Undecided, "a surface has no triangle to measure", rules));
     } else {
         const double limit = rules.minGapMm.value_or(CheckRules::kDefaultMinGapMm);
-        const bool holds = report.gap.nearest.distanceMm >= limit;
+        const bool isWide = report.gap.nearest.distanceMm >= limit;
+        const bool holds = isWide && report.gap.isComplete;
         add(kMinGap, holds,
             areIdentical
                 ? "none: the two are the same surface"
                 : "smallest " + formatLength(report.gap.nearest.distanceMm, 3) + " mm" + where +
-                      (holds ? "" : ", must be at least " + formatNumber(limit) + " mm"));
+                      (!isWide ? ", must be at least " + formatNumber(limit) + " mm"
+                       : holds ? ""
+                               : "; not decided: hundreds of triangles lie about as far from each "
+                                 "one, more than are measured"));
     }
     checks.back().isRequired |= rules.minGapMm.has_value();
     return checks;

@@ -39,8 +39,10 @@ std::string measure(const TriangleMesh& mesh, const FinishOptions& options, Surf
     if (!record.topology.isClosed()) return faults;
     record.volumeMm3 = enclosedVolume(mesh);
     if (options.border == Border::Open) return faults;  // a cavity's outer wall may be missing
-    record.insideOutPieces = std::ssize(findInsideOutPieces(mesh, record.topology));
-    if (options.method == Method::Adaptive && record.insideOutPieces > 0) {
+    if (const auto pieces = findInsideOutPieces(mesh, record.topology)) {
+        record.insideOutPieces = std::ssize(*pieces);
+    }
+    if (options.method == Method::Adaptive && record.insideOutPieces.value_or(0) > 0) {
         faults = "pieces inside out: " + std::to_string(*record.insideOutPieces);
     }
     return faults;
@@ -52,7 +54,10 @@ std::optional<TriangleMesh> fitToDigits(TriangleMesh& mesh, const FinishOptions&
                                         SurfaceRecord& record) {
     if (!options.digits) return std::nullopt;
     const auto& [format, toFrame, askedBoundMm] = *options.digits;
-    if (format->precision == CoordinatePrecision::Float64) return std::nullopt;
+    if (format->precision == CoordinatePrecision::Float64) {
+        record.roundingMm = 0;
+        return std::nullopt;
+    }
     if (!options.countsCrossings && options.method != Method::Adaptive) {
         return asStored(mesh, format->precision, toFrame);
     }
@@ -155,7 +160,7 @@ FinishedSurface finishSurface(TriangleMesh mesh, const FinishOptions& options,
         stage("crossings", [&] {
             SelfIntersections crossings = findSelfIntersections(
                 stored ? *stored : finished.mesh, {.maxPairs = options.maxCrossingPairs});
-            record.crossingPairs = crossings.pairCount;
+            if (crossings.isComplete) record.crossingPairs = crossings.pairCount;
             finished.crossings = std::move(crossings.pairs);
         });
     }

@@ -170,6 +170,8 @@ private:
     bool move(VertexId v) {
         std::vector<std::int64_t> star, near;
         listAround(v, star, near);
+        constexpr std::size_t kMostPairs = 1 << 20;  // a vertex of thousands of triangles stays
+        if (star.size() * near.size() > kMostPairs) return false;
         std::int64_t least = harmOf(v, star, near);
         const Vec3 before = file_.points[v];
         Vec3 best = before;

@@ -113,7 +113,7 @@ Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize) {
         {"boxesChangingTopology", statistics.boxesChangingTopology},
         {"edgesSplit", statistics.edgesSplit},
         {"errorBoundMm", orNull(surface.errorBoundMm())},
-        {"roundingMm", number(surface.roundingMm)},
+        {"roundingMm", orNull(surface.roundingMm)},
         {"verifiedSamples", surface.verification ? Json(surface.verification->samples) : Json()},
         {"verifiedMaxMm", surface.verification ? number(surface.verification->maxMm) : Json()},
         {"wantedTriangles", orNull(statistics.wantedTriangles)},

@@ -309,6 +309,53 @@ TEST(Simplify, DropsTrianglesWithoutAreaAndDoubledOnes) {
     expectSound(simplify(withUnusedVertex(sphere), within(0.1)).mesh);
 }
 
+// Two triangles on the same corners, facing opposite sides, close the surface together.
+TEST(Simplify, KeepsBothOfTwoTrianglesThatFaceOppositeSides) {
+    TriangleMesh flap = icosphere(3, {}, 10);
+    flap.normals = {};
+    const auto [a, b, c] = flap.triangles[100];
+    const auto tip = std::ssize(flap.points);
+    flap.points.push_back(1.5 * flap.points[a]);
+    flap.triangles.push_back({a, b, tip});
+    flap.triangles.push_back({b, a, tip});
+
+    // two tetrahedra on one face, which both have
+    TriangleMesh glued;
+    glued.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
+    glued.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3},
+                       {0, 1, 2}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}};
+
+    for (const TriangleMesh& mesh : {flap, glued}) {
+        ASSERT_TRUE(checkTopology(mesh).isClosed());
+        const Simplified result = simplify(mesh, within(0.001));
+        EXPECT_EQ(result.statistics.duplicateTriangles, 0);
+        const TopologyReport topology = checkTopology(result.mesh);
+        EXPECT_TRUE(topology.isClosed());
+        EXPECT_EQ(topology.count(TopologyDefect::InconsistentEdge), 0);
+        EXPECT_EQ(topology.count(TopologyDefect::DuplicateTriangle), 1);
+    }
+    // of three, the one that is there twice goes
+    glued.triangles.push_back({0, 1, 2});
+    EXPECT_EQ(simplify(glued, within(0.001)).statistics.duplicateTriangles, 1);
+}
+
+// Work at a vertex grows with its triangles, not with their square.
+TEST(Simplify, TakesVerticesOfAnyValence) {
+    constexpr VertexId kCount = 50000;
+    TriangleMesh mesh;
+    mesh.points = {{0, 0, 5}, {0, 0, -5}};
+    for (VertexId n = 0; n < kCount; ++n) {
+        const double turn = 2 * std::numbers::pi * static_cast<double>(n) / kCount;
+        mesh.points.push_back({5 * std::cos(turn), 5 * std::sin(turn), 0});
+        const VertexId a = 2 + n, b = 2 + (n + 1) % kCount;
+        mesh.triangles.push_back({0, a, b});
+        mesh.triangles.push_back({1, b, a});
+    }
+    const Simplified result = simplify(mesh, within(0.05));
+    expectSound(result.mesh);
+    expectBoundHolds(mesh, result);
+}
+
 TEST(Simplify, KeepsASurfaceWithNeedlesClosed) {
     TriangleMesh sphere = icosphere(4, {}, 10);
     for (std::size_t t = 0; t < 2000; t += 97) {

@@ -206,7 +206,7 @@ TEST(SolidAngle, CriterionFailsOpenAndFlippedSurfaces) {
 
 TEST(Winding, CavitiesAreTheOtherWayRound) {
     const auto insideOut = [](const TriangleMesh& mesh) {
-        return findInsideOutPieces(mesh, checkTopology(mesh));
+        return findInsideOutPieces(mesh, checkTopology(mesh)).value();
     };
     TriangleMesh wall = icosphere(2, {}, 5);
     flipOrientation(wall);
@@ -233,12 +233,12 @@ TEST(Winding, ACavityMayTouchTheSurfaceAtAVertex) {
     *nearest = {0, 0, 0};  // a corner of the cube
     wall.normals.clear();
     const TriangleMesh both = merged({cube, wall});
-    EXPECT_TRUE(findInsideOutPieces(both, checkTopology(both)).empty());
+    EXPECT_TRUE(findInsideOutPieces(both, checkTopology(both))->empty());
 }
 
 TEST(Winding, PiecesThatCrossLieInNoneOfEachOther) {
     const auto insideOut = [](const TriangleMesh& mesh) {
-        return findInsideOutPieces(mesh, checkTopology(mesh));
+        return findInsideOutPieces(mesh, checkTopology(mesh)).value();
     };
     const TriangleMesh ball = icosphere(2, {}, 10);
     TriangleMesh shell = icosphere(3, {}, 40), turned = ball;

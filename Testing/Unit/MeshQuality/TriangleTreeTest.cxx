@@ -39,11 +39,12 @@ std::set<Pair> pairsOf(const TriangleTree& tree, const TriangleView& view, std::
     const TriangleTree::Pairs pairs(tree, view);
     std::set<Pair> found;
     for (std::int64_t begin = 0; begin < tree.leafCount(); begin += piece) {
-        pairs.forEach(begin, std::min(begin + piece, tree.leafCount()),
-                      [&](std::uint32_t a, std::uint32_t b) {
-                          EXPECT_LT(a, b);
-                          EXPECT_TRUE(found.insert({a, b}).second) << "told twice";
-                      });
+        constexpr auto kAll = std::numeric_limits<std::int64_t>::max();
+        EXPECT_TRUE(pairs.forEach(begin, std::min(begin + piece, tree.leafCount()), kAll,
+                                  [&](std::uint32_t a, std::uint32_t b) {
+                                      EXPECT_LT(a, b);
+                                      EXPECT_TRUE(found.insert({a, b}).second) << "told twice";
+                                  }));
     }
     return found;
 }

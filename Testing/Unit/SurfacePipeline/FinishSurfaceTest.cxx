@@ -122,7 +122,7 @@ TEST(FinishSurface, BoundsTheSurfaceAsTheFileHoldsIt) {
         farthestMm = std::max(farthestMm, norm(rounded - p));
     }
     EXPECT_GT(farthestMm, 0.01);
-    EXPECT_NEAR(record.roundingMm, farthestMm, 1e-9);
+    EXPECT_NEAR(record.roundingMm.value(), farthestMm, 1e-9);
     EXPECT_NEAR(*record.errorBoundMm(), 0.05 + farthestMm, 1e-9);
 
     options.digits = stlDigits(0.01);

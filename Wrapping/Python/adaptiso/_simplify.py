@@ -54,7 +54,8 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
         In the frame of `mesh`. ``error_bound`` is proved against `mesh`. ``report`` has
         ``border_edges``, ``non_manifold_vertices``, ``crossing_triangles``,
         ``degenerate_triangles`` and ``duplicate_triangles`` of `mesh` (the last two were dropped),
-        and ``wanted_triangles``.
+        ``wanted_triangles``, and ``warnings``: lines with a ``code``, as
+        Documentation/Warnings.md lists them.
 
     Raises
     ------

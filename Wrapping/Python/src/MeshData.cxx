@@ -188,7 +188,8 @@ std::string MeshData::report() {
     SurfaceHistory history = *history_;
     if (!history.record.crossingPairs) {
         const Unlocked unlocked;
-        history.record.crossingPairs = findSelfIntersections(mesh_, {.maxPairs = 0}).pairCount;
+        const SelfIntersections found = findSelfIntersections(mesh_, {.maxPairs = 0});
+        if (found.isComplete) history.record.crossingPairs = found.pairCount;
     }
     report_ = reportOf(history, *image_);
     return report_;

@@ -9,8 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "Arrays.h"
 #include "Calls.h"
 #include "MeshData.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso::python {
 namespace {
@@ -38,7 +40,15 @@ py::tuple simplifyMesh(const MeshData& data, SimplifyOptions options, int thread
     made->setFrameKnown(data.isFrameKnown());
     made->setErrorBoundMm(result.statistics.errorBoundMm);
     made->setAskedBoundMm(options.maxErrorMm);
-    return py::make_tuple(std::move(made), toDict(result.statistics));
+    py::dict found = toDict(result.statistics);
+    std::vector<Warning> warnings;
+    if (options.maxErrorMm && !data.mesh().points.empty()) {
+        const auto warning = boundOverSize("max_error", *options.maxErrorMm,
+                                           norm(boundingBox(data.mesh()).size()), {});
+        if (warning) warnings.push_back(*warning);
+    }
+    found["warnings"] = warnings;
+    return py::make_tuple(std::move(made), found);
 }
 
 /// Nearest point of `onto` for each vertex of `mesh`: triangles (n) and corners' weights (n, 3).

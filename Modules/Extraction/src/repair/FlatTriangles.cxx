@@ -35,8 +35,11 @@ public:
         std::erase_if(flat_, [&](std::int64_t t) { return result_.isLeftOut[t] != 0; });
         listEdges();
         // a neighbour that is flat itself has its turn first
-        for (std::size_t before = flat_.size() + 1; flat_.size() < before;) {
+        constexpr std::size_t kMostTries = 1 << 24;
+        std::size_t tries = 0;
+        for (std::size_t before = flat_.size() + 1; flat_.size() < before && tries < kMostTries;) {
             before = flat_.size();
+            tries += before;
             std::erase_if(flat_, [&](std::int64_t t) { return splitAcross(t); });
         }
         for (const std::int64_t t : flat_) result_.isLeftOut[t] = 1;
@@ -109,11 +112,13 @@ private:
     std::set<VertexId> ringOf(VertexId v) const {
         std::map<VertexId, VertexId> after;
         for (const std::int64_t t : trianglesAt_.at(v)) {
+            if (result_.isLeftOut[t] != 0) continue;
             const Triangle& c = result_.triangles[t];
             const auto i = std::find(c.begin(), c.end(), v) - c.begin();
             if (!after.try_emplace(c[(i + 1) % 3], c[(i + 2) % 3]).second) return {};
         }
         std::set<VertexId> ring;
+        if (after.empty()) return ring;
         for (VertexId at = after.begin()->first; ring.insert(at).second;) {
             const auto next = after.find(at);
             if (next == after.end()) return {};
@@ -124,6 +129,11 @@ private:
 
     /// The link condition away from borders, and no triangle loses its area.
     bool isCollapsible(const Edge& edge) const {
+        constexpr std::size_t kMostAround = 1 << 12;  // at more, each would take as long as all
+        if (std::max(trianglesAt_.at(edge.first).size(), trianglesAt_.at(edge.second).size()) >
+            kMostAround) {
+            return false;
+        }
         const std::set<VertexId> a = ringOf(edge.first), b = ringOf(edge.second);
         std::vector<VertexId> common;
         std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
@@ -131,8 +141,8 @@ private:
         const std::vector<std::int64_t>& changed = trianglesAt_.at(edge.second);
         return std::all_of(changed.begin(), changed.end(), [&](std::int64_t t) {
             const Triangle after = renamed(result_.triangles[t], edge);
-            return hasRepeatedIndex(after) || !isDegenerate(mesh_, after) ||
-                   isDegenerate(mesh_, result_.triangles[t]);
+            return result_.isLeftOut[t] != 0 || hasRepeatedIndex(after) ||
+                   !isDegenerate(mesh_, after) || isDegenerate(mesh_, result_.triangles[t]);
         });
     }
 
@@ -150,15 +160,14 @@ private:
         const auto [stays, goes] = edge;
         std::vector<std::int64_t>& at = trianglesAt_[stays];
         for (const std::int64_t t : std::exchange(trianglesAt_[goes], {})) {
+            if (result_.isLeftOut[t] != 0) continue;
             Triangle& c = result_.triangles[t];
-            const Triangle before = c;
             c = renamed(c, edge);
-            if (!hasRepeatedIndex(c)) {
+            if (hasRepeatedIndex(c)) {
+                result_.isLeftOut[t] = 1;
+            } else {
                 at.push_back(t);
-                continue;
             }
-            result_.isLeftOut[t] = 1;
-            for (const VertexId v : before) std::erase(trianglesAt_[v], t);
         }
         reachMm_[stays] = reachAfter(edge);
         result_.movedMm = std::max(result_.movedMm, reachMm_[stays]);

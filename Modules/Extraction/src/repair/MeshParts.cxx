@@ -7,6 +7,8 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <tuple>
+#include <unordered_set>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
@@ -100,6 +102,7 @@ public:
 private:
     using Spoke = HalfEdges<std::uint32_t>::Spoke;
     static constexpr std::uint32_t kNone = HalfEdges<std::uint32_t>::kNone;
+    static constexpr std::size_t kFewSpokes = 32;  ///< a look at each is faster than sorting
 
     std::uint32_t from(std::uint32_t h) const { return parts_.triangles[h / 3][h % 3]; }
     static std::uint32_t next(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -206,22 +209,39 @@ private:
         parts_.inputTriangle = std::move(input);
     }
 
-    /// A triangle before it has the same corners, whichever way round.
-    static bool isDuplicate(const Spoke& spoke, std::span<const Spoke> before) {
-        return std::any_of(before.begin(), before.end(), [&](const Spoke& s) {
-            return std::minmax(s.to, s.from) == std::minmax(spoke.to, spoke.from);
-        });
+    /// The corner with the smallest number.
+    std::uint32_t lowestCorner(std::uint32_t triangle) const {
+        const auto& t = parts_.triangles[triangle];
+        return static_cast<std::uint32_t>(std::min_element(t.begin(), t.end()) - t.begin());
     }
 
+    /// Of triangles with the same corners, the same way round, all but the first. Those of opposite
+    /// ways close the surface together: both stay, as crossing triangles.
     /// \return whether there were any
     bool dropDuplicates() {
         std::vector<std::uint8_t> isGone(parts_.triangles.size(), 0);
+        const auto areSame = [](const Spoke& a, const Spoke& b) {
+            return a.to == b.to && a.from == b.from;
+        };
+        const auto drop = [&](const Spoke& spoke) {
+            const std::uint32_t t = spoke.leaving / 3;
+            // seen from all three corners alike: one of them decides
+            if (spoke.leaving == 3 * t + lowestCorner(t)) isGone[t] = 1;
+        };
         halfEdges_.forEachFan([&](std::span<const Spoke> spokes) {
-            for (std::size_t i = 0; i < spokes.size(); ++i) {
-                const Spoke& spoke = spokes[i];
-                if (spoke.leaving % 3 == 0 && isDuplicate(spoke, spokes.first(i))) {
-                    isGone[spoke.leaving / 3] = 1;
+            if (spokes.size() <= kFewSpokes) {
+                for (std::size_t i = 1; i < spokes.size(); ++i) {
+                    const auto isBefore = [&](const Spoke& s) { return areSame(s, spokes[i]); };
+                    if (std::ranges::any_of(spokes.first(i), isBefore)) drop(spokes[i]);
                 }
+                return;
+            }
+            std::vector<Spoke> sorted(spokes.begin(), spokes.end());
+            std::sort(sorted.begin(), sorted.end(), [](const Spoke& a, const Spoke& b) {
+                return std::tie(a.to, a.from, a.leaving) < std::tie(b.to, b.from, b.leaving);
+            });
+            for (std::size_t i = 1; i < sorted.size(); ++i) {
+                if (areSame(sorted[i - 1], sorted[i])) drop(sorted[i]);
             }
         });
         parts_.duplicate = std::count(isGone.begin(), isGone.end(), 1);
@@ -253,13 +273,31 @@ private:
     void cutEdges() {
         isCut_.assign(twin_.size(), 0);
         halfEdges_.forEachFan([&](std::span<const Spoke> spokes) {
+            if (spokes.size() <= kFewSpokes) {
+                for (const Spoke& spoke : spokes) {
+                    const auto count = [&](std::uint32_t Spoke::*end) {
+                        return std::count_if(spokes.begin(), spokes.end(),
+                                             [&](const Spoke& s) { return s.*end == spoke.to; });
+                    };
+                    isCut_[spoke.leaving] =
+                        static_cast<std::uint8_t>(count(&Spoke::to) > 1 || count(&Spoke::from) > 1);
+                }
+                return;
+            }
+            std::vector<std::uint32_t> to, from;
             for (const Spoke& spoke : spokes) {
-                const auto count = [&](std::uint32_t Spoke::*end) {
-                    return std::count_if(spokes.begin(), spokes.end(),
-                                         [&](const Spoke& s) { return s.*end == spoke.to; });
-                };
-                isCut_[spoke.leaving] =
-                    static_cast<std::uint8_t>(count(&Spoke::to) > 1 || count(&Spoke::from) > 1);
+                to.push_back(spoke.to);
+                from.push_back(spoke.from);
+            }
+            std::sort(to.begin(), to.end());
+            std::sort(from.begin(), from.end());
+            const auto isMultiple = [](const std::vector<std::uint32_t>& ends, std::uint32_t v) {
+                const auto [first, last] = std::equal_range(ends.begin(), ends.end(), v);
+                return last - first > 1;
+            };
+            for (const Spoke& spoke : spokes) {
+                isCut_[spoke.leaving] = static_cast<std::uint8_t>(isMultiple(to, spoke.to) ||
+                                                                  isMultiple(from, spoke.to));
             }
         });
         for (std::uint32_t h = 0; h < twin_.size(); ++h) {
@@ -309,30 +347,29 @@ private:
     }
 
     void split(std::uint32_t v, std::uint32_t mark) {
-        const auto leaving = halfEdges_.from(v);
-        std::vector<std::uint32_t> left(leaving.begin(), leaving.end());
-        for (bool isFirst = true; !left.empty(); isFirst = false) {
+        std::unordered_set<std::uint32_t> isTaken;
+        bool isFirst = true;
+        for (const std::uint32_t start : halfEdges_.from(v)) {
+            if (!isTaken.insert(start).second) continue;
             std::uint32_t number = v;
             if (!isFirst) {
                 number = static_cast<std::uint32_t>(parts_.points.size());
                 parts_.points.push_back(parts_.points[v]);
             }
+            isFirst = false;
             keep(number);
             parts_.marks.resize(parts_.points.size(), Patch::kPlain);
             parts_.marks[number] = mark;
-            std::vector<std::uint32_t> fan{left.front()};
+            std::vector<std::uint32_t> fan{start};
             for (std::size_t i = 0; i < fan.size(); ++i) {
                 const std::uint32_t after = twin_[previous(fan[i])];
                 const std::uint32_t twin = twin_[fan[i]];
                 for (const std::uint32_t g : {after, twin == kNone ? kNone : next(twin)}) {
-                    if (g != kNone && std::find(fan.begin(), fan.end(), g) == fan.end()) {
-                        fan.push_back(g);
-                    }
+                    if (g != kNone && isTaken.insert(g).second) fan.push_back(g);
                 }
             }
             for (const std::uint32_t h : fan) {
                 parts_.triangles[h / 3][h % 3] = number;
-                std::erase(left, h);
             }
         }
     }

@@ -79,6 +79,31 @@ TEST(HalfEdges, MatchOneOfSeveralAndRefuseTheRest) {
     EXPECT_EQ(countUnmatched(withDuplicateTriangle(icosphere(1))), 3);
 }
 
+TEST(HalfEdges, MatchRoundAVertexOfManyTrianglesAsElsewhere) {
+    // from 0 to each of 1 ... 40 run some, and some back
+    TriangleMesh mesh;
+    mesh.points.resize(41);
+    std::vector<std::int64_t> there(41), back(41);
+    for (VertexId v = 1; v <= 40; ++v) {
+        for (VertexId n = 0; n < v % 4; ++n) mesh.triangles.push_back({0, v, v % 40 + 1});
+    }
+    const std::vector<VertexId> twin = twinsOf(mesh);
+    for (const Triangle& t : mesh.triangles) {
+        ++there[t[1]];
+        ++back[t[2]];
+    }
+    std::vector<std::int64_t> matched(41);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (twin[3 * t] == HalfEdges::kNone) continue;
+        const auto& other = mesh.triangles[twin[3 * t] / 3];
+        EXPECT_EQ(twin[3 * t] % 3, 2);
+        EXPECT_EQ(other[2], mesh.triangles[t][1]);
+        EXPECT_EQ(static_cast<std::size_t>(twin[twin[3 * t]]), 3 * t);
+        ++matched[other[2]];
+    }
+    for (VertexId v = 1; v <= 40; ++v) EXPECT_EQ(matched[v], std::min(there[v], back[v])) << v;
+}
+
 TEST(HalfEdges, AreListedByTheirVertexInAscendingOrder) {
     const TriangleMesh mesh = planeMesh(4, 1);
     HalfEdges halfEdges;

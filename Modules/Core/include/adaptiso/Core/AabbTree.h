@@ -25,6 +25,16 @@ struct ClosestPoint {
     Vec3 pointMm;
 };
 
+/// Bounds what many searches cost together. A point that lies as far from thousands of triangles,
+/// as the centre of a sphere, has all of them looked at.
+struct SearchEffort {
+    std::int64_t triangles;  ///< left to look at
+    bool isRough = false;    ///< they were used up: the last distance may be a hundredth too large
+
+    /// Of boxes that are nearer than the best by less, none is opened once the effort is used up.
+    static constexpr double kRough = 0.99;
+};
+
 /// A binary tree of axis-aligned boxes over the triangles of a mesh: finds the nearest triangle to
 /// a point and the triangles near a box.
 ///
@@ -44,8 +54,10 @@ public:
     /// The nearest triangle to `p`, and where on it. Of triangles equally near one is chosen,
     /// always the same.
     /// \param hint  a triangle that is thought to be near, to save time; -1: none
+    /// \param effort  shrinks by the triangles looked at; null: exact, whatever it takes
     /// \pre p is finite; hint < the number of triangles
-    ClosestPoint closestPoint(const Vec3& p, std::int64_t hint = -1) const;
+    ClosestPoint closestPoint(const Vec3& p, std::int64_t hint = -1,
+                              SearchEffort* effort = nullptr) const;
 
     /// Calls visit(triangle) for every triangle whose box overlaps `box`, in an order that is
     /// always the same.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,11 @@ std::span<const WarningCode> warningCodes();
 /// Appends `more` to `warnings`; those without a file become `file`'s.
 void addWarnings(std::vector<Warning>& warnings, std::span<const Warning> more,
                  const std::string& file = {});
+
+/// "bound-over-size": a length in mm is more than a tenth of a surface's diagonal, as of a surface
+/// in metres. \param name  of the length: "--max-error"
+std::optional<Warning> boundOverSize(const std::string& name, double mm, double diagonalMm,
+                                     const std::string& file);
 
 /// line() of each warning.
 std::vector<std::string> linesOf(std::span<const Warning> warnings);

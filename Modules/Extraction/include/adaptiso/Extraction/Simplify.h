@@ -35,8 +35,9 @@ struct SimplifyStatistics {
     /// across it is split there; if two corners lie next to each other, they become one, so
     /// that the surface does not open.
     std::int64_t degenerateTriangles = 0;
-    std::int64_t duplicateTriangles = 0;  ///< of the input, with the corners of another: dropped
-    std::int64_t borderEdges = 0;         ///< of the input: with one triangle
+    std::int64_t duplicateTriangles = 0;  ///< of the input, with the corners of another, the same
+                                          ///< way round: dropped
+    std::int64_t borderEdges = 0;  ///< of the input: with one triangle
     /// Vertices of the input at edges with three triangles or more, or with two that face opposite
     /// sides, and those that join triangles by themselves alone: kept as they are.
     std::vector<std::int64_t> nonManifoldVertices;

@@ -3,13 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Geometry.h"
-#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/TriangleTree.h"
 
 namespace adaptiso {
@@ -69,47 +68,29 @@ private:
     std::vector<std::uint8_t> isClear_;
 };
 
+/// Pairs of triangles that cross, a < b, each once, in an order that is always the same.
+struct CrossingPairs {
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    /// Triangles that lie near too many others to be tested with all (see findCrossingPairs()),
+    /// ascending; empty: the pairs are all there are.
+    std::vector<std::uint32_t> undecided;
+    std::int64_t tests = 0;  ///< of pairs whose boxes overlap
+};
+
 /// Finds the pairs of triangles of a mesh that cross, as trianglesCross() has it. Near pairs come
 /// from a tree of boxes. Most are proved clear by a fan (ClearFans) or a plane (Certificate.h); the
-/// others are decided exactly.
+/// others are decided exactly. Where boxes overlap too often, a tree of groups that planes tell
+/// apart (TriangleGroups) takes their place: a vertex of a million triangles costs no more than
+/// others.
 ///
-/// Cost: O(T log T + pairs of overlapping boxes), in parallel; 40 bytes a triangle, and those of
-/// ClearFans. Keeps a reference to the mesh's points and triangles.
-class CrossingSearch {
-public:
-    /// \pre the corners of triangles are finite
-    explicit CrossingSearch(const TriangleView& mesh);
-
-    /// Pieces that are searched side by side.
-    std::int64_t pieceCount() const { return (tree_.leafCount() + kPiece - 1) / kPiece; }
-
-    /// Calls visit(piece, a, b), a < b, once for each pair that crosses, side by side for different
-    /// pieces; within one always in the same order.
-    /// \param isAsked  isAsked(a, b): the pair is looked at
-    template <class IsAsked, class Visit>
-    void forEachPair(const IsAsked& isAsked, const Visit& visit) const {
-        if (mesh_.triangles.empty()) return;
-        const TriangleTree::Pairs pairs(tree_, mesh_);
-        parallelForPieces(tree_.leafCount(), kPiece, [&](std::int64_t begin, std::int64_t end) {
-            pairs.forEach(begin, end, [&](std::uint32_t a, std::uint32_t b) {
-                if (isAsked(a, b) && cross(a, b)) visit(begin / kPiece, a, b);
-            });
-        });
-    }
-    template <class Visit>
-    void forEachPair(const Visit& visit) const {
-        forEachPair([](std::uint32_t, std::uint32_t) { return true; }, visit);
-    }
-
-private:
-    static constexpr std::int64_t kPiece = 128;  ///< leaves
-
-    bool cross(std::uint32_t a, std::uint32_t b) const;
-
-    TriangleView mesh_;
-    double gap_;  ///< distance that rounding may hide
-    TriangleTree tree_;
-    std::optional<ClearFans> fans_;
-};
+/// Where hundreds of triangles are near each one, and planes do not tell them apart, no more are
+/// tested than a budget in proportion to T: 256 near ones, 8 that cross, and more where T is below
+/// a few thousand. Such triangles are reported as undecided.
+/// \param isAsked  isAsked(a, b): the pair is looked at; empty: all are
+/// \pre the corners of triangles are finite
+/// Cost: O(T log T), in parallel; 40 bytes a triangle, and those of ClearFans or TriangleGroups.
+CrossingPairs findCrossingPairs(
+    const TriangleView& mesh,
+    const std::function<bool(std::uint32_t, std::uint32_t)>& isAsked = {});
 
 }  // namespace adaptiso

@@ -24,7 +24,8 @@ public:
     InsideTest(const TriangleMesh& mesh, const AabbTree& tree);
 
     /// On: on a triangle, to the bit. \pre p is finite
-    Side sideOf(const Vec3& p) const;
+    /// \param tests  grows by the tests of a ray and a triangle; may be null
+    Side sideOf(const Vec3& p, std::int64_t* tests = nullptr) const;
 
     /// Every edge lies in exactly two triangles of finite corners: one ray is enough.
     bool isClosed() const { return isClosed_; }

@@ -18,19 +18,21 @@ enum class NestingRelation {
     Swapped,    ///< the outer one lies strictly inside the inner one
     Apart,      ///< each lies outside the other
     Mixed,      ///< they don't meet, but pieces of them lie on different sides
-    Unknown     ///< one has no triangle
+    Unknown     ///< one has no triangle, or too many are near each other: see NestingReport
 };
 /// "nested", "crossing", "identical", "swapped", "apart", "mixed", "unknown"
 std::string_view toString(NestingRelation relation);
 
 struct NestingOptions {
-    std::int64_t maxPairs = 1000;  ///< pairs to name; all are counted
+    std::int64_t maxPairs = 1000;  ///< pairs to name
 };
 
 struct NestingReport {
     NestingRelation relation = NestingRelation::Unknown;
-    std::int64_t crossingPairs = 0;           ///< pairs of triangles with a point in common
-    std::vector<TrianglePair> pairs;          ///< the first of them, ascending: of inner, of outer
+    std::int64_t crossingPairs = 0;   ///< pairs of triangles with a point in common
+    std::vector<TrianglePair> pairs;  ///< the first of them, ascending: of inner, of outer
+    bool isComplete = true;           ///< false: more may meet, as SelfIntersections::isComplete
+    bool areSidesKnown = true;  ///< false: rays would pass too many triangles, counts are too low
     std::int64_t innerVertices = 0;           ///< of inner, used by a triangle
     std::int64_t innerVerticesNotInside = 0;  ///< of those, not strictly inside outer
     VertexId firstNotInside = -1;             ///< the first of those
@@ -50,7 +52,8 @@ struct NestingReport {
 /// of them is asked; where one surface is open, each of the other's is asked, as InsideTest says.
 /// Meshes may be broken: triangles with a corner that is not finite are left out, triangles without
 /// area meet nothing. \pre triangles name points that are there, options.maxPairs
-/// >= 0 \throws InvalidInput otherwise Cost: O(T log T), in parallel; two AabbTrees of memory.
+/// >= 0 \throws InvalidInput otherwise Cost: O(T log T), in parallel; two AabbTrees of memory, and
+/// those of findCrossingPairs() where boxes overlap too often. No more pairs are kept than named.
 NestingReport checkNesting(const TriangleMesh& inner, const TriangleMesh& outer,
                            const NestingOptions& options = {});
 

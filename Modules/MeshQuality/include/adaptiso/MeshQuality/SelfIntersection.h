@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
@@ -36,19 +37,30 @@ using TrianglePair = std::array<std::int64_t, 2>;
 struct SelfIntersections {
     std::int64_t pairCount = 0;
     std::vector<TrianglePair> pairs;  ///< the first of them, ascending
+    bool isComplete = true;           ///< false: more may cross, see findCrossingPairs()
+
+    /// No pair crosses, and all are decided.
+    bool isClear() const { return pairCount == 0 && isComplete; }
 };
 
-/// All pairs of triangles of `mesh` that cross, as trianglesCross has it. Triangles with a
-/// non-finite corner cross nothing.
+/// "3 pairs", "more than 4,100,000 pairs": how many were found, where there may be more.
+std::string pairsText(std::int64_t found, bool isComplete);
+
+/// "3 pairs of triangles cross", "more than 4,100,000 pairs of triangles cross", "not decided: ..."
+std::string crossingText(const SelfIntersections& crossings);
+
+/// All pairs of triangles of `mesh` that cross, as trianglesCross has it; where they are too many,
+/// some of them: findCrossingPairs() says how many. Triangles with a non-finite corner cross
+/// nothing.
 /// \pre triangles name points that are there, there are fewer than 2^32 of both, and
 ///      options.maxPairs >= 0 \throws InvalidInput otherwise
-/// Cost: that of CrossingSearch, and 20 bytes a triangle.
+/// Cost: that of findCrossingPairs(), and 20 bytes a triangle.
 /// The same mesh gives the same bytes, whatever the number of threads.
 SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
                                         const SelfIntersectionOptions& options = {});
 
-/// The triangles of those pairs, ascending. What is required, what is thrown and what it costs: as
-/// findSelfIntersections() has it.
+/// The triangles of those pairs, and those that near pairs leave undecided, ascending. What is
+/// required, what is thrown and what it costs: as findSelfIntersections() has it.
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
 
 /// Cell of a triangle that may cross any other.
@@ -57,7 +69,7 @@ inline constexpr std::uint64_t kNoCell = ~std::uint64_t{0};
 /// The same for a mesh of which it is known that triangles of different cells do not cross, as
 /// where marching cubes put them there: such pairs are not looked at. \param cells  of each
 /// triangle; kNoCell: it may cross any other. Empty: each may Cost: without triangles in cells,
-/// that of CrossingSearch; where all are in cells, O(T)
+/// that of findCrossingPairs(); where all are in cells, O(T)
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh,
                                             std::span<const std::uint64_t> cells);
 

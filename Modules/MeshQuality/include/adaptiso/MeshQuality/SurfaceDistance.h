@@ -25,7 +25,9 @@ struct DistanceStatistics {
     double rmsMm = 0;
     double p95Mm = 0;
     double p99Mm = 0;
-    double maxMm = 0;                   ///< of samples and vertices: never more than the truth
+    double maxMm = 0;  ///< of samples and vertices: never more than the truth, but for `rough`
+    std::int64_t rough = 0;             ///< points whose distance may be a hundredth too large: see
+                                        ///< findNearestPlaces()
     Vec3 maxPointMm;                    ///< where, on the surface that is measured from
     double meanNormalDeviationDeg = 0;  ///< angle between the two surfaces' triangle normals
     double p95NormalDeviationDeg = 0;
@@ -80,6 +82,8 @@ struct SurfaceGap {
     NearestPoints nearest;        ///< infinitely far when a surface has no triangle
     std::int64_t triangleA = -1;  ///< the first such pair
     std::int64_t triangleB = -1;
+    bool isComplete = true;  ///< false: hundreds of triangles lie about as far from each one, and
+                             ///< some that are not looked at may lie nearer
 };
 
 /// The smallest distance of two surfaces, over all pairs of their triangles (not of vertices or

@@ -149,8 +149,11 @@ public:
 
     /// Calls visit(a, b), a < b, for the pairs of which the triangle that comes first by order of
     /// leaves lies in one of the leaves [begin, end): all leaves give each pair once.
+    /// \param mostLeaves  pairs of leaves to look at
+    /// \return  false: there were more, and not all pairs are visited
     template <class Visit>
-    void forEach(std::int64_t begin, std::int64_t end, const Visit& visit) const;
+    bool forEach(std::int64_t begin, std::int64_t end, std::int64_t mostLeaves,
+                 const Visit& visit) const;
 
 private:
     template <class Visit>
@@ -201,7 +204,8 @@ private:
 };
 
 template <class Visit>
-void TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, const Visit& visit) const {
+bool TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, std::int64_t mostLeaves,
+                                  const Visit& visit) const {
     // leaves that come one after the other are near the same ones: these are looked up together
     constexpr std::int64_t kTogether = 8;
     std::vector<std::pair<std::int64_t, Box>> near;
@@ -214,6 +218,8 @@ void TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, const Vi
         tree_.forEachLeaf(all, first + 1, [&](std::int64_t other, const Box& box) {
             near.emplace_back(other, box);
         });
+        mostLeaves -= std::ssize(near);
+        if (mostLeaves < 0) return false;
         for (std::int64_t number = first; number < last; ++number) {
             forEachIn(number, visit);
             const Box own = leaves_[number].all();
@@ -223,6 +229,7 @@ void TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, const Vi
             }
         }
     }
+    return true;
 }
 
 /// Pairs within a leaf.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
@@ -31,9 +32,11 @@ std::vector<std::vector<std::uint32_t>> findPiecesAround(
 /// \param topology  checkTopology(mesh) \pre  topology.isWatertight(), finite coordinates,
 /// triangles name points that are there
 ///       \throws InvalidInput otherwise
-/// Cost: O(T log T) for several pieces, O(1) for one.
-std::vector<std::int64_t> findInsideOutPieces(const TriangleMesh& mesh,
-                                              const TopologyReport& topology);
+/// \return  empty where thousands of pieces lie in each other, or cross so often that the budget of
+///          findCrossingPairs() ends
+/// Cost: O(T log T) for several pieces, O(1) for one; 4096 tests of a ray a triangle at most.
+std::optional<std::vector<std::int64_t>> findInsideOutPieces(const TriangleMesh& mesh,
+                                                             const TopologyReport& topology);
 
 struct InsideOutPieces {
     std::int64_t count = 0;

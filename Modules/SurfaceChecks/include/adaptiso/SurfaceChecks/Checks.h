@@ -30,7 +30,8 @@ struct SurfaceFacts {
     SizeReport size;
     SolidAngleCriterion solidAngle;
     /// Numbers of the pieces that are the wrong way round; empty if that is undefined: the
-    /// surface is open, not manifold, not oriented, or not finite.
+    /// surface is open, not manifold, not oriented, or not finite; or undecided:
+    /// findInsideOutPieces() says when.
     std::optional<std::vector<std::int64_t>> insideOut;
     std::optional<WallReport> walls;  ///< empty unless measured: measureWallsOf()
     double areaMm2 = 0;               ///< of the triangles with finite corners

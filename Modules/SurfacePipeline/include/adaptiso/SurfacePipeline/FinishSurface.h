@@ -39,9 +39,11 @@ struct SurfaceRecord {
     std::int64_t madeTriangles = 0;   ///< before the pieces were dropped
     TopologyReport topology;          ///< of the kept pieces
     double areaMm2 = 0;
-    double roundingMm = 0;                        ///< largest move of a point by the file's digits
-    std::optional<double> volumeMm3;              ///< empty with an open border
-    std::optional<std::int64_t> crossingPairs;    ///< 0 of Method::Adaptive; none when not counted
+    std::optional<double> roundingMm;  ///< largest move of a point by the file's digits;
+                                       ///< empty when not measured
+    std::optional<double> volumeMm3;   ///< empty with an open border
+    std::optional<std::int64_t>
+        crossingPairs;  ///< 0 of Method::Adaptive; none when not counted, or too many
     std::optional<std::int64_t> insideOutPieces;  ///< empty with an open border
     std::optional<Verification> verification;     ///< empty when not asked for
 
@@ -54,7 +56,7 @@ struct SurfaceRecord {
     /// of methods that prove none.
     std::optional<double> errorBoundMm() const {
         if (!statistics.errorBoundMm) return std::nullopt;
-        return *statistics.errorBoundMm + roundingMm;
+        return *statistics.errorBoundMm + roundingMm.value_or(0);
     }
 };
 

@@ -75,8 +75,27 @@ public:
 private:
     /// Opposite half-edges leave a vertex and arrive there in the same fan.
     static void matchFan(std::span<const Spoke> spokes, std::vector<Index>& twin) {
+        constexpr std::size_t kFew = 32;  // below, a look at each is faster than sorting
+        if (spokes.size() > kFew) return matchLargeFan(spokes, twin);
         for (std::size_t i = 0; i < spokes.size(); ++i) {
             twin[spokes[i].leaving] = oppositeOf(i, spokes);
+        }
+    }
+
+    static void matchLargeFan(std::span<const Spoke> spokes, std::vector<Index>& twin) {
+        std::vector<std::pair<Index, Index>> to, from;  // with the half-edge
+        for (const Spoke& s : spokes) {
+            to.emplace_back(s.to, s.leaving);
+            from.emplace_back(s.from, s.leaving % 3 == 0 ? s.leaving + 2 : s.leaving - 1);
+        }
+        const auto inOrder = [](const auto& a, const auto& b) { return a.first < b.first; };
+        std::stable_sort(to.begin(), to.end(), inOrder);
+        std::stable_sort(from.begin(), from.end(), inOrder);
+        std::size_t arriving = 0;
+        for (const auto& [other, leaving] : to) {
+            while (arriving < from.size() && from[arriving].first < other) ++arriving;
+            const bool isThere = arriving < from.size() && from[arriving].first == other;
+            twin[leaving] = isThere ? from[arriving++].second : kNone;
         }
     }
 

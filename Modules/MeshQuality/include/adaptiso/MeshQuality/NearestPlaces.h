@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso {
+
+/// Finds the place of a surface that is nearest to each of many points, in parallel.
+///
+/// By the tree; where its boxes do not tell triangles apart, as near a vertex of thousands of
+/// needles, by boxes along the triangles' own axes. A point that is about as far from thousands of
+/// triangles, as the centre of a sphere, has no more than 768 of them looked at on average: what it
+/// finds may then be a hundredth farther than the nearest.
+/// \param pointOf  of a number below `count`; empty: is left out
+/// \param take     take(number, nearest), from any thread; may come twice, the last counts
+/// \param areNear  points that follow each other are near each other, most of them: saves time. Of
+///                 triangles equally near, another may be found.
+/// \return how many distances may be a hundredth too large
+/// \pre  `tree` is of `mesh`, which has a triangle with finite corners
+/// Cost: O(log T) a point. The same input gives the same answers, whatever the number of threads.
+std::int64_t findNearestPlaces(const TriangleMesh& mesh, const AabbTree& tree, std::int64_t count,
+                               const std::function<std::optional<Vec3>(std::int64_t)>& pointOf,
+                               const std::function<void(std::int64_t, const ClosestPoint&)>& take,
+                               bool areNear = true);
+
+}  // namespace adaptiso
