@@ -104,6 +104,8 @@ export class HeadTab {
       surfaces.push({ name: surface.name.replace("_", " "), shape: opened.shape, color: kColors[n], opacity: n + 1 === report.surfaces.length ? 0.35 : 1 });
     }
     this.task.addGlb("model.glb", surfaces);
+    const shades = this.shown?.labels.map((_, n, { length }): Color => Array(3).fill(60 + 120 * n / Math.max(1, length - 1)) as Color) ?? [];
+    if (shades.length > 0) await (await this.page.view())?.setLabelColors(shades);  // colours are the surfaces' here
     await (await this.page.view())?.showSurfaces(surfaces);
     document.body.dataset.shown = "model";
   }
