@@ -22,7 +22,8 @@ std::vector<Warning> failing(const CommonOptions& common, std::span<const Warnin
     if (!common.isStrict) return bad;
     std::copy_if(warnings.begin(), warnings.end(), std::back_inserter(bad),
                  [&](const Warning& warning) {
-                     return std::ranges::find(common.allowed, warning.code) == common.allowed.end();
+                     return !isNote(warning) &&
+                            std::ranges::find(common.allowed, warning.code) == common.allowed.end();
                  });
     return bad;
 }
@@ -33,7 +34,9 @@ void printWarnings(const std::string& program, const CommonOptions& common,
                    std::span<const Warning> warnings) {
     printed().insert(printed().end(), warnings.begin(), warnings.end());
     if (common.hidesWarnings) return;
-    for (const Warning& warning : warnings) printError(program, "warning: " + warning.line());
+    for (const Warning& warning : warnings) {
+        printError(program, (isNote(warning) ? "note: " : "warning: ") + warning.line());
+    }
 }
 
 Warning countMissed(const std::string& file, const std::string& what, std::int64_t written,

@@ -104,7 +104,7 @@ async function runReported(program, args, inputs, files, options) {
   if (done.exitCode > (mayFail ? 1 : 0)) throw new AdaptisoError(lines.at(-1) ?? `adaptiso-${program} failed`, done.exitCode);
   const report = writtenFile(program, done, kReport);
   return { exitCode: done.exitCode, report: JSON.parse(new TextDecoder().decode(report.bytes)),
-    warnings: lines.filter((line) => line.includes("warning: ")), files: done.files.filter((file) => file !== report),
+    warnings: lines.filter((line) => /(warning|note): /.test(line)), files: done.files.filter((file) => file !== report),
     memoryBytes: done.memoryBytes };
 }
 

@@ -1,5 +1,8 @@
 #include "adaptiso/Core/Warning.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -17,7 +20,7 @@ constexpr WarningCode kCodes[] = {
     {"colors-not-read", "a table of names has colours that cannot be read; the names were taken"},
     {"copies-left-out", "copies of files, compressed or exact, were left out"},
     {"count-missed", "the number of triangles asked for was not reached"},
-    {"count-unset", "a surface's count is 0 or all ones; all that follow were read"},
+    {"count-unset", "a surface's count is 0 or all ones; all that follow were read", true},
     {"distance-rough", "some distances are known to a hundredth only"},
     {"electrodes-left-out", "electrodes have no place in their file (n/a, NaN, empty)"},
     {"empty-slices",
@@ -49,7 +52,7 @@ constexpr WarningCode kCodes[] = {
     {"missing-chunks", "chunks of a Zarr are missing; the fill value stands for them"},
     {"mixed-signedness", "some slices hold signed samples and some unsigned ones"},
     {"names-not-used", "a table of names beside the map cannot be read"},
-    {"noise-kept", "the default bound left noise at full resolution; a stated one thins it"},
+    {"noise-kept", "the default bound left noise at full resolution; a stated one thins it", true},
     {"not-finite", "voxels hold NaN or infinity"},
     {"objects-left-aside", "a vendor's DICOM objects without an image were left aside"},
     {"overlap-unmeasured", "the overlap (Dice) could not be measured"},
@@ -62,7 +65,7 @@ constexpr WarningCode kCodes[] = {
     {"resample-filled", "resampling filled what lies around the image with its smallest value"},
     {"scaling-ignored", "the header's scaling is incomplete; the stored values were taken"},
     {"series-left-aside", "images of other series in the folder were left aside"},
-    {"several-solids", "an STL file holds several solids; they were read as one surface"},
+    {"several-solids", "an STL file holds several solids; they were read as one surface", true},
     {"skull-closed", "a hole in the segmentation's skull is closed in the head model"},
     {"skull-thickened", "much of the head model's skull is thicker than the segmentation's"},
     {"skull-unseen", "the skull shows on too few of the rays to the scalp"},
@@ -84,6 +87,11 @@ constexpr WarningCode kCodes[] = {
 };
 
 }  // namespace
+
+bool isNote(const Warning& warning) {
+    const auto known = std::ranges::find(kCodes, warning.code, &WarningCode::code);
+    return known != std::end(kCodes) && known->isNote;
+}
 
 std::span<const WarningCode> warningCodes() {
     return kCodes;

@@ -130,8 +130,8 @@ export class Task {
     const sums = await Promise.all(files.map((file) => sha256(file.bytes)));
     const verdict = [title, `adaptiso ${kVersion}`,
       ...(files.length === 1 ? [`SHA-256 ${sums[0]}`] : [])].join("; ");
-    const warnings = done.stderr.split("\n").filter((line) => line.includes("warning: "))
-      .map((line) => line.replace(/^.*?warning: /, ""));
+    const warnings = done.stderr.split("\n").filter((line) => /(warning|note): /.test(line))
+      .map((line) => line.replace(/^.*?(warning|note): /, ""));
     this.part(".result").replaceChildren(
       make("p", { className: "verdict" }, make("strong", {}, title)),
       ...details,

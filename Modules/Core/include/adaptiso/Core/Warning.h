@@ -22,10 +22,14 @@ struct Warning {
 
 struct WarningCode {
     std::string_view code, meaning;
+    bool isNote = false;  ///< a fact worth knowing, no doubt: --strict passes it
 };
 
 /// Every code in use, by name. Documentation/Warnings.md holds the same table.
 std::span<const WarningCode> warningCodes();
+
+/// WarningCode::isNote of its code.
+bool isNote(const Warning& warning);
 
 /// Appends `more` to `warnings`; those without a file become `file`'s.
 void addWarnings(std::vector<Warning>& warnings, std::span<const Warning> more,
