@@ -11,6 +11,7 @@
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
+#include "Common/UsageWords.h"
 #include "Common/Verdict.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/TextCells.h"
@@ -109,6 +110,11 @@ std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchI
         PlannedRun& run = runs.emplace_back(PlannedRun{std::move(each)});
         const BatchItem& item = run.item;
         run.inputs = item.inputs;
+        // an input "...nii" has the stem ".."
+        if (!staysBelow(item.name) || item.name == ".") {
+            throw InvalidInput(item.inputs.front().string() + ": " + shown(item.name) +
+                               " is no name for files; rename the file");
+        }
         // a run of it would be many inputs again, and so without end
         if (holdsName(item.name)) {
             throw InvalidInput(item.inputs.front().string() +

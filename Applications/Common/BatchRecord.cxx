@@ -290,7 +290,7 @@ std::vector<fs::path> recordFiles(const fs::path& folder, bool hasSubjects) {
             if (!hasSubjects || !isSubject || name.starts_with('.')) {
                 entry.disable_recursion_pending();
             }
-        } else if (!name.starts_with('.') && name.ends_with(".json") &&
+        } else if (!name.starts_with(".adaptiso-") && name.ends_with(".json") &&
                    name.find(".adaptiso-") != std::string::npos) {
             found.push_back(entry->path().lexically_normal());
         }

@@ -154,6 +154,18 @@ std::string sidecarName(const fs::path& output) {
     return top.substr(0, top.find('.')) + ".json";
 }
 
+/// What requireNoLink() says of `files`; may be empty.
+std::string linkFaultOf(const std::vector<fs::path>& files, const fs::path& folder) {
+    try {
+        for (const fs::path& file : files) {
+            if (!file.empty()) requireNoLink(file, folder);
+        }
+        return {};
+    } catch (const FileError& error) {
+        return error.what();
+    }
+}
+
 /// Why nothing may be written where `run` puts its files: a link that nobody named stands there.
 /// May be empty. \param folder  that the batch writes to; may be empty
 std::string linkFault(const BatchProgram& program, const PlannedRun& run, const fs::path& folder) {
@@ -166,14 +178,7 @@ std::string linkFault(const BatchProgram& program, const PlannedRun& run, const 
     }
     files.insert(files.end(), {run.item.folder, run.record});
     for (const auto& extra : run.extras) files.push_back(extra.second);
-    try {
-        for (const fs::path& file : files) {
-            if (!file.empty()) requireNoLink(file, folder);
-        }
-        return {};
-    } catch (const FileError& error) {
-        return error.what();
-    }
+    return linkFaultOf(files, folder);
 }
 
 class BatchRun {
@@ -308,6 +313,8 @@ private:
         for (const RecordedFile& output : former.recordedOutputs) {
             const fs::path path = run.item.folder / output.file;
             std::error_code error;
+            // neither another folder's file nor one of an annex, which is for reading
+            if (!linkFaultOf({path}, run.item.folder).empty()) continue;
             if (!changeOf(output, path).empty()) continue;
             fs::remove(path, error);
             for (fs::path folder = path.parent_path(); folder != run.item.folder && !error;
@@ -415,9 +422,10 @@ private:
         const char* const state = !record.hasPassed()     ? "FAILED"
                                   : record.isOfEarlierRun ? "before"
                                                           : "done  ";
-        std::cout << state << "  " << name << ": " << says(record) << ", "
-                  << formatFixed(record.seconds, 2) << " s"
-                  << (record.madeAgain.empty() ? "" : "; made again: " + record.madeAgain)
+        const std::string again =
+            record.madeAgain.empty() ? "" : "; made again: " + record.madeAgain;
+        std::cout << oneLine(std::string(state) + "  " + name + ": " + says(record) + ", " +
+                             formatFixed(record.seconds, 2) + " s" + again)
                   << std::endl;
     }
 
@@ -495,7 +503,13 @@ std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record) {
             return wanted.filename().string() + " was not made";
         }
     }
-    if (!run.surfaces.empty() && record.outputs.empty()) return "it holds no surface";
+    if (record.outputs.size() < run.surfaces.size()) return "it lacks a surface";
+    for (const std::string& output : record.outputs) {
+        const bool isRecorded = std::ranges::any_of(record.recordedOutputs, [&](const auto& file) {
+            return file.option == kOutput && file.file == output;
+        });
+        if (!isRecorded) return "its record is damaged";
+    }
     for (const RecordedFile& output : record.recordedOutputs) {
         const bool isAsked =
             output.option == kOutput || std::ranges::any_of(run.extras, [&](const auto& extra) {

@@ -1,6 +1,9 @@
+#include <set>
+
 #include "Common/BatchRecord.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/ParseJson.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -22,16 +25,39 @@ std::vector<RecordedFile> filesFrom(const Json& list) {
 void requirePlaces(const RunRecord& record, const fs::path& folder) {
     const auto require = [&](const std::string& place) {
         if (!staysBelow(place)) throw FileError("it names a file outside its folder");
+        if (withoutControls(place) != place || place.find("{name}") != std::string::npos) {
+            throw FileError("it names a file as no program does");
+        }
         requireIn(folder / place, folder);
     };
-    for (const std::string& output : record.outputs) require(output);
+    std::set<std::string> known;
+    for (const std::string& output : record.outputs) {
+        require(output);
+        if (!known.insert(output).second) throw FileError("it names a file twice");
+    }
     for (const RecordedFile& output : record.recordedOutputs) require(output.file);
     for (const RecordedFile& input : record.inputs) {
         if (!input.place.empty()) require(input.place);
     }
 }
 
+/// The request of adaptiso-bids, as its group level takes it.
+/// \throws Json::exception  a value has another type  \throws FileError  it is no such request
+void requireRequest(const Json& asked) {
+    if (!asked.is_object()) throw FileError("its request is no object");
+    for (const char* key : {"product", "options", "segmentations"}) {
+        static_cast<void>(asked.value(key, std::string()));
+    }
+    for (const char* key : {"pictures", "strict"}) static_cast<void>(asked.value(key, false));
+    for (const std::string& code : asked.value("allow", std::vector<std::string>())) {
+        if (code.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos) {
+            throw FileError("it allows what is no warning's code");
+        }
+    }
+}
+
 /// \throws Json::exception  a key is missing, or its value has another type
+/// \throws FileError        as requireRequest()
 RunRecord recordFrom(const Json& json) {
     RunRecord record;
     record.program = json.at("program").at("name");
@@ -40,6 +66,7 @@ RunRecord recordFrom(const Json& json) {
     record.date = json.at("date");
     record.says = json.at("says");
     record.asked = json.value("asked", Json());
+    if (!record.asked.is_null()) requireRequest(record.asked);
     record.name = json.at("name");
     record.files = json.at("files").get<std::vector<std::string>>();
     if (!json.at("exitCode").is_null()) record.exitCode = json.at("exitCode");

@@ -13,6 +13,7 @@
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "Run.h"
+#include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
@@ -95,6 +96,7 @@ void checkSubject(const BemOptions& options) {
         if (!fs::is_directory(path.parent_path(), error)) {
             throw FileError(path.parent_path().string() + ": there is no such folder; make it");
         }
+        requireNoLink(path.parent_path(), subject);
         const fs::file_status status = fs::symlink_status(path, error);
         if (fs::is_symlink(status)) {
             throw FileError(path.string() +
@@ -159,7 +161,7 @@ void putElectrodes(BemRun& run, const BemHooks& hooks) {
 void writeSubject(BemRun& run, const AtomicFolder& folder) {
     for (const SubjectFile& file : subjectFiles(run.options)) {
         run.subjectFiles.push_back(file.path);
-        run.addOutput(file.path).write([&](const fs::path& path) {
+        run.addOutput(file.path, file.path.parent_path()).write([&](const fs::path& path) {
             // the bytes alone: a file that is replaced keeps its mode
             std::ifstream from(folder.path() / file.name, std::ios::binary);
             std::ofstream to(path, std::ios::binary | std::ios::trunc);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <set>
 #include <tuple>
@@ -113,10 +114,13 @@ public:
         std::vector<QualityRow> rows;
     };
 
-    DatasetStatus(const BidsOptions& options, const ChosenSubjects& chosen)
+    /// \param areFromRecords  the options, which then lead to no file elsewhere
+    /// \throws InvalidInput
+    DatasetStatus(const BidsOptions& options, const ChosenSubjects& chosen, bool areFromRecords)
         : options_(options), subjects_(chosen.folders) {
         options_.makesPictures = false;  // the page shows those that are there; they are no result
         const std::vector<Job> jobs = findJobs(options_, subjects_);
+        if (areFromRecords) requireInputs(jobs);
         if (options_.makes("check")) addChecks(checkJob(options_, jobs.front()));
         for (const auto& [subject, reason] : chosen.faulty) {
             addAbsent({.participant = subject}, QualityState::Failed, reason);
@@ -135,6 +139,22 @@ public:
     std::size_t records = 0;  ///< that exist
 
 private:
+    void requireInputs(const std::vector<Job>& jobs) const {
+        for (const Job& job : jobs) {
+            for (const PlannedRun& run : job.runs) {
+                for (const fs::path& input : run.inputs) {
+                    const bool isIn = std::ranges::any_of(
+                        std::array{options_.dataset, options_.segmentations, options_.output},
+                        [&](const fs::path& root) { return !root.empty() && liesIn(input, root); });
+                    if (isIn || std::ranges::count(run.item.inputs, input) > 0) continue;
+                    throw InvalidInput("the records name " + input.string() +
+                                       ", which is not in BIDS_DIR or OUT_DIR; if they are right, "
+                                       "give the participant level's options here too");
+                }
+            }
+        }
+    }
+
     void add(const Job& job) {
         for (const std::string& subject : job.without) {
             addAbsent({.participant = subject, .product = job.product}, QualityState::Missing,
@@ -361,7 +381,7 @@ std::string wordsOf(const BidsOptions& options) {
     }
     if (!options.makesPictures) words += " --no-pictures";
     if (options.common.isStrict) words += " --strict";
-    for (const std::string& code : options.common.allowed) words += " --allow " + code;
+    for (const std::string& code : options.common.allowed) words += " --allow " + shellQuoted(code);
     return words;
 }
 
@@ -492,8 +512,9 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
                            ": is not there; run the participant level first");
     }
     requireOwnDataset(options.output);
+    const bool areFromRecords = !options.namesProducts();
     fillInOptions(options);
-    const DatasetStatus status(options, chosen);
+    const DatasetStatus status(options, chosen, areFromRecords);
     if (status.records == 0) {
         throw InvalidInput(options.output.string() +
                            ": nothing of these participants is there, with these options (" +

@@ -178,7 +178,7 @@ Job newJob(const BidsOptions& options, const std::string& product) {
     if (!isMesh) chosen.emplace_back("--force");
     if (isBem) {
         program.inputOption = "--t1";
-        program.inputOptions = {"--brain-mask", "--aseg", "--pial", "--electrodes"};
+        program.inputOptions = {"--brain-mask", "--aseg", "--pial", "--electrodes", "--lesion"};
     } else if (!isMesh) {
         program.inputOptions = {"--names"};
     }

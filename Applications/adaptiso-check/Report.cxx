@@ -11,6 +11,7 @@
 #include "Common/Json.h"
 #include "Common/PreprocessingOptions.h"
 #include "Common/ReportOutput.h"
+#include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "Run.h"
 #include "adaptiso/Core/Text.h"
@@ -168,7 +169,7 @@ std::string printText(const SurfaceFacts& facts) {
 }
 
 void printSurface(std::ostream& out, const SurfaceRun& surface, const CheckRun& run) {
-    out << surface.file.string() << ": ";
+    out << oneLine(surface.file.string()) << ": ";
     if (!surface.error.empty()) {
         out << "NOT READ\n";
         return;
@@ -548,9 +549,9 @@ std::string jsonReport(const CheckRun& run) {
 void printReport(std::ostream& out, const CheckRun& run) {
     for (const SurfaceRun& surface : run.surfaces) printSurface(out, surface, run);
     for (const NestingRun& pair : run.nesting) {
-        out << run.surfaces[pair.inner].file.string() << " in "
-            << run.surfaces[pair.outer].file.string() << " (" << frameText(run.nestingFrame)
-            << ")\n";
+        out << oneLine(run.surfaces[pair.inner].file.string()) << " in "
+            << oneLine(run.surfaces[pair.outer].file.string()) << " ("
+            << frameText(run.nestingFrame) << ")\n";
         printChecks(out, pair.checks);
         printVerdict(out, pair.checks, run);
     }

@@ -8,6 +8,7 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/ReportOutput.h"
+#include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "Run.h"
 #include "adaptiso/Core/Text.h"
@@ -96,7 +97,7 @@ std::string signedPercent(double value, double of) {
 }
 
 void printSurface(std::ostream& out, std::string_view name, const SurfaceSummary& surface) {
-    out << name << "  " << surface.file.string() << ": " << formatCount(surface.triangles)
+    out << name << "  " << oneLine(surface.file.string()) << ": " << formatCount(surface.triangles)
         << " triangles, area " << formatMeasure(surface.areaMm2) << " mm2, ";
     if (surface.volumeMm3) {
         out << "volume " << formatMeasure(*surface.volumeMm3) << " mm3\n";

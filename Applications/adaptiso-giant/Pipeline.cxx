@@ -119,6 +119,7 @@ bool SeamInputs::areChanged(const Index3& seam, const std::string& inputs) {
 
 GiantPlan readPlan(const fs::path& work) {
     const fs::path file = GiantPlan::fileIn(work);
+    for (const char* folder : {"tiles", "seams"}) requireNoLink(work / folder, work);
     const std::optional<std::string> text = readFoundFile(file, work);
     if (!text) {
         throw FileError(file.string() + ": there is no plan; make one with: adaptiso-giant plan " +

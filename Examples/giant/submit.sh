@@ -14,6 +14,12 @@ out=$(realpath -m "${2:?"OUT is missing"}")
 shift 2
 per=${ADAPTISO_PER_TASK:-8}
 adaptiso-giant plan "$work" "$@"
+for place in "$work/logs" "$work"/{tile,seam}.ids; do
+    if [ -L "$place" ]; then
+        echo "submit.sh: $place: is a link; remove it" >&2
+        exit 3
+    fi
+done
 mkdir -p "$work/logs"
 after=""
 for stage in tile seam; do

@@ -145,6 +145,32 @@ class Links(OutsideTest):
             where.unlink()
             self.path("work/plan.json").write_bytes(plan)
 
+    def test_in_the_place_of_a_giants_tiles_are_refused_by_every_step(self):
+        self.run_in(OK, program("giant"), "plan", "work", "--input", "ball.nii", "--iso", 100,
+                    "--tile", 32)
+        for name in ("tiles", "seams"):
+            self.path(f"work/{name}").rmdir()
+            self.link(f"work/{name}", "elsewhere")
+            for step in ("tile", "seam", "join"):
+                self.run_in(BAD_INPUT, program("giant"), step, "work")
+            self.assert_untouched()
+            self.path(f"work/{name}").unlink()
+            self.path(f"work/{name}").mkdir()
+
+    def test_of_a_subjects_folder_are_refused(self):
+        self.path("subjects/bert").mkdir(parents=True)
+        self.link("subjects/bert/bem", "elsewhere")
+        ply = ("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+               "property float z\nelement face 4\nproperty list uchar int vertex_indices\n"
+               "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+        for name in "abc":
+            self.path(f"{name}.ply").write_text(ply)
+        done = self.run_in(BAD_INPUT, program("bem"), "--surfaces", "a.ply", "b.ply", "c.ply",
+                           "--input-coordinates", "ras", "-o", "model", "--subjects-dir",
+                           "subjects", "--subject", "bert")
+        self.assertIn("subjects/bert/bem: is a link", done.stderr)
+        self.assert_untouched()
+
     def test_to_scans_and_participants_elsewhere_are_refused(self):
         self.study()
         write_nifti(self.path("elsewhere/patient.nii"), ball())
@@ -222,6 +248,54 @@ class Records(OutsideTest):
         page = self.path("out/summary.html").read_text()
         self.assertIn("a damaged record", page)
         self.assertNotIn("victim", page)
+
+    def test_remove_nothing_of_an_annex(self):
+        self.study()
+        objects = self.path(".git/annex/objects/aa")
+        objects.mkdir(parents=True)
+        shutil.copy(self.path("victim"), objects / "key")
+        self.path("out/sub-01/anat").mkdir(parents=True)
+        self.path("out/sub-01/anat/d").symlink_to("../../../.git/annex/objects/aa")
+        kept = {**self.planted()["keptOutputs"][0], "file": "d/key"}
+        self.path("out/sub-01/anat/sub-01_desc-iso100_mesh.vtp.adaptiso-mesh.json").write_text(
+            json.dumps(self.planted(keptOutputs=[kept])))
+        self.bids(OK, "participant", "--participant-label", "01")
+        self.assertTrue((objects / "key").exists())
+
+    def test_that_name_surfaces_which_are_not_there_count_for_nothing(self):
+        self.study()
+        self.bids(OK, "participant")
+        for path in list(self.path("out").rglob("*.vtp")):
+            record = path.with_name(path.name + ".adaptiso-mesh.json")
+            said = json.loads(record.read_text())
+            record.write_text(json.dumps({**said, "keptOutputs": [], "outputs": ["any.vtp"]}))
+            path.unlink()
+        self.assertIn("0 whole", self.bids(CHECK_FAILED, "group").stdout)
+        self.assertNotIn("before", self.bids(OK, "participant").stdout)
+
+    def test_with_values_of_other_types_are_damaged(self):
+        self.study()
+        self.bids(OK, "participant")
+        record = next(self.path("out/sub-01").rglob("*.adaptiso-mesh.json"))
+        said = json.loads(record.read_text())
+        for asked in ({"product": 7}, {"options": ["x"]}, {"pictures": "x"}, {"allow": ["x; y"]}):
+            record.write_text(json.dumps({**said, "asked": {**said["asked"], **asked}}))
+            done = self.run_in(CHECK_FAILED, program("bids"), "study", "out", "group")
+            self.assertIn("its record is damaged", done.stderr)
+        for outputs in (["{name}.vtp"], said["outputs"] * 2, ["a\nb.vtp"]):
+            record.write_text(json.dumps({**said, "outputs": outputs}))
+            self.bids(CHECK_FAILED, "group", what=("--check", *FAST))
+
+    def test_lead_to_no_file_elsewhere_by_their_options(self):
+        self.study()
+        self.path("out/sub-01/anat").mkdir(parents=True)
+        shutil.copy(self.path("ball.nii"), self.path("study/sub-01/anat/sub-01_dseg.nii"))
+        asked = {"product": "labels", "pictures": False, "strict": False, "allow": [],
+                 "options": f"names={self.path('victim')}"}
+        self.path("out/sub-01/anat/sub-01_mesh.adaptiso-labels.json").write_text(json.dumps(
+            self.planted(program={"name": "adaptiso-labels"}, keptOutputs=[], asked=asked)))
+        done = self.run_in(BAD_INPUT, program("bids"), "study", "out", "group")
+        self.assertIn("not in BIDS_DIR or OUT_DIR", done.stderr)
 
     def test_take_label_maps_from_the_dataset_alone(self):
         self.study()
@@ -314,7 +388,7 @@ class DeepJson(OutsideTest):
 class Terminals(OutsideTest):
     NAMES = ["a\033]0;evil\007.nii", "b\u009b2J.nii", "c\u202eiin.nii", "d\u2066.nii",
              os.fsdecode(b"e\x9b2J.nii")]
-    STEERING = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+    STEERING = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 
     def assert_plain(self, done):
         for text in (done.stdout, done.stderr):
@@ -334,6 +408,35 @@ class Terminals(OutsideTest):
                 self.assert_plain(self.run_in(code, program("mesh"), name, *arguments))
             self.assert_plain(self.run_in(BAD_INPUT, program("check"), name))
             self.assert_plain(self.run_in(2, program("mesh"), "--no-such", name))
+
+    def test_lines_are_not_forged_by_names(self):
+        name = "n\ndone    good.nii: fine.nii"
+        shutil.copy(self.path("ball.nii"), self.path(name))
+        done = self.run_in(OK, program("mesh"), name, "ball.nii", "--iso", 100, "--output-dir", "out")
+        self.assertEqual(len([line for line in done.stdout.splitlines() if line.startswith("done")]), 2)
+        self.mesh("ball.nii", "--iso", 100, "-o", "x.vtp")
+        forged = "n\nFAILED  good.vtp"
+        shutil.copy(self.path("x.vtp"), self.path(forged))
+        for command in (("check", forged), ("compare", forged, "x.vtp")):
+            self.assertNotIn("\nFAILED", self.run_in(OK, program(command[0]), *command[1:]).stdout)
+
+    def test_pages_have_none_of_them(self):
+        for name in self.NAMES[:4]:
+            shutil.copy(self.path("ball.nii"), self.path(name))
+            self.mesh(name, "--iso", 100, "-o", "x.vtp", "--report", "page.html")
+            self.assertIsNone(self.STEERING.search(self.path("page.html").read_text()))
+
+    def test_names_that_are_folders_are_refused(self):
+        shutil.copy(self.path("ball.nii"), self.path("...nii"))
+        self.path("s.vtp").write_text("precious")
+        self.assert_fails(BAD_INPUT, r": \.\. is no name for files", "...nii", "ball.nii", "--iso", 100,
+                          "--output-dir", "out", "-o", "{name}/s.vtp")
+
+    def test_names_with_a_dot_ahead_are_in_the_summary(self):
+        self.path(".bad.nii").write_text("no image")
+        self.run_in(CHECK_FAILED, program("mesh"), "ball.nii", ".bad.nii", "--iso", 100,
+                    "--output-dir", "out")
+        self.assertIn("1 of 2 failed", self.path("out/summary.html").read_text())
 
     def test_json_keeps_the_names(self):
         for name in self.NAMES[:4]:

@@ -66,10 +66,16 @@ std::size_t characterBytes(std::string_view text, std::size_t at) {
 bool isControl(std::string_view character) {
     const auto c = static_cast<unsigned char>(character[0]);
     if (character.size() == 1) return c < 0x20 || (c >= 0x7f && c < 0xa0);
-    if (character.size() == 2) return c == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0;
+    if (character.size() == 2) {
+        return (c == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0) ||
+               character == "\u061c";
+    }
+    const bool isTag = character >= "\U000E0000" && character <= "\U000E007F";
+    if (character.size() == 4) return isTag;
+    const bool isMark = character == "\u200e" || character == "\u200f" || character == "\ufeff";
     const bool isLineOrEmbedding = character >= "\u2028" && character <= "\u202e";
     const bool isIsolate = character >= "\u2066" && character <= "\u2069";
-    return character.size() == 3 && (isLineOrEmbedding || isIsolate);
+    return isMark || isLineOrEmbedding || isIsolate;
 }
 
 }  // namespace

@@ -120,10 +120,7 @@ std::optional<double> cellNumber(std::string_view cell, char separator) {
 }
 
 std::string writtenCell(std::string_view text) {
-    std::string cell(text);
-    for (char& c : cell) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    }
+    const std::string cell = withoutControls(text);
     if (trimmed(cell).empty()) return "n/a";
     return needsMark(cell) ? "'" + cell : cell;
 }

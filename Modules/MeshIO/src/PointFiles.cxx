@@ -13,6 +13,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/ParseJson.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextCells.h"
 #include "adaptiso/Core/TextLines.h"
 
@@ -62,7 +63,7 @@ void add(PointFile& file, std::string_view name, const Vec3& point, PointKind ki
     if (!std::isfinite(squaredNorm(point))) {
         damaged("the place of " + printable(name) + " is not finite");
     }
-    file.points.push_back({std::string(name), kind, point});
+    file.points.push_back({withoutControls(name), kind, point});
 }
 
 /// Names stand for channels, so each is to be there once. Head points are numbered only.

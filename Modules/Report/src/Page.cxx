@@ -62,7 +62,7 @@ std::string dataElement(const std::string& id, const std::string& type, const st
 }
 
 std::string jsonText(const Json& json) {
-    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
     for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
         text.replace(at, 1, "\\u003c");
     }

@@ -102,8 +102,8 @@ std::string tableHtml(const ReportTable& table) {
 
 std::string escaped(const std::string& text) {
     using nlohmann::json;
-    const std::string valid =
-        json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
+    const std::string valid = json::parse(
+        json(withoutControls(text, "\n\t")).dump(-1, ' ', false, json::error_handler_t::replace));
     std::string html;
     for (const char c : valid) {
         switch (c) {
