@@ -533,7 +533,7 @@ class Group(BidsTest):
     def test_prints_options_that_give_the_same_table_again(self):
         """Every option that changes which files are made, or how a run is recorded."""
         self.scan("sub-01/anat/sub-01", ball(24, 8), "dseg")
-        seg = self.path("seg of these")
+        seg = self.study / "derivatives/seg of these"
         for number in range(1, 8):
             path = seg / f"sub-{number:02}/anat/sub-{number:02}_dseg.nii"
             path.parent.mkdir(parents=True)

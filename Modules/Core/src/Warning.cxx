@@ -11,7 +11,7 @@ namespace {
 /// A line for each code, in alphabetical order; a test compares it with Documentation/Warnings.md.
 constexpr WarningCode kCodes[] = {
     {"array-left-out", "the output's format cannot hold values at points that the input has"},
-    {"attributes-left-out", "colours or numbers of an STL file's triangles were left out"},
+    {"attributes-left-out", "colours or numbers of an STL file's triangles were left out", true},
     {"blended-labels", "an image that may hold labels was smoothed or resampled with blending"},
     {"bound-exceeded", "the format's digits take the file beyond the bound that was asked for"},
     {"bound-over-size", "a bound in mm is more than a tenth of the surface's diagonal"},
@@ -22,7 +22,7 @@ constexpr WarningCode kCodes[] = {
     {"count-missed", "the number of triangles asked for was not reached"},
     {"count-unset", "a surface's count is 0 or all ones; all that follow were read", true},
     {"distance-rough", "some distances are known to a hundredth only"},
-    {"electrodes-left-out", "electrodes have no place in their file (n/a, NaN, empty)"},
+    {"electrodes-left-out", "electrodes have no place in their file (n/a, NaN, empty)", true},
     {"empty-slices",
      "a segmentation's frames have no neighbours; slices without a frame are empty"},
     {"entries-left-out", "pipes, links to folders and link loops of a folder were left out"},
