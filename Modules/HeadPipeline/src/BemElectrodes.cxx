@@ -133,6 +133,7 @@ void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
 std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
     const ElectrodeOptions& options = model.options.electrodes;
     PointFile file = *options.file;
+    addWarnings(model.warnings, file.warnings, options.fileName);
     warnOfPlaceless(file, options.fileName, model);
     guessUnit(file, options.fileName, model);
     const std::optional<Landmarks> own = landmarksOf(file.points);

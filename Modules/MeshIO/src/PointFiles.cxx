@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "Bytes.h"
+#include "Counts.h"
 #include "Fiff.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FoundFiles.h"
@@ -57,7 +58,7 @@ void add(PointFile& file, std::string_view name, const Vec3& point, PointKind ki
                     "give each a name of 1 to 100 characters");
     }
     if (std::isnan(point.x) || std::isnan(point.y) || std::isnan(point.z)) {
-        file.placeless.emplace_back(name);
+        file.placeless.push_back(withoutControls(name));
         return;
     }
     if (!std::isfinite(squaredNorm(point))) {
@@ -171,6 +172,10 @@ std::array<std::size_t, 4> columnsOf(const std::vector<std::string>& header) {
             unsupported("its first line names no column '" + std::string(kNames[n]) + "'",
                         "a table of electrodes begins with the columns name, x, y, z");
         }
+        if (std::any_of(found + 1, header.end(), isIt)) {
+            unsupported("its first line names the column '" + std::string(kNames[n]) + "' twice",
+                        "rename or remove one of them");
+        }
         columns[n] = static_cast<std::size_t>(found - header.begin());
     }
     return columns;
@@ -221,7 +226,7 @@ PointFile decodeTsv(std::string_view bytes) {
     return file;
 }
 
-/// Three words; all of them "n/a" or the like where a point has no place.
+/// Three words and no more; all of them "n/a" or the like where a point has no place.
 Vec3 placeOf(ByteSource& words, std::string_view name, std::int64_t line) {
     Vec3 point;
     for (int a = 0; a < 3; ++a) {
@@ -234,7 +239,38 @@ Vec3 placeOf(ByteSource& words, std::string_view name, std::int64_t line) {
         if (!value) refuseCoordinate(word, a, name, line);
         point[a] = *value;
     }
+    if (const std::string_view more = words.word(); !more.empty() && more.front() != '#') {
+        unsupported(linePlace(line) + "behind the three coordinates of " + printable(name) +
+                        " stands " + printable(more),
+                    "give x, y and z alone, and names without blanks");
+    }
     return point;
+}
+
+/// The number of "NumberPositions= 3"; empty where none stands.
+std::optional<std::int64_t> countOf(std::string_view line) {
+    const std::size_t digits = line.find_first_of("0123456789+-");
+    if (digits == line.npos) return std::nullopt;
+    return toInteger(line.substr(digits), line.substr(0, line.find_first_of("=: \t")));
+}
+
+void requireCount(std::optional<std::int64_t> count, std::size_t there, const char* what) {
+    if (!count || *count == static_cast<std::int64_t>(there)) return;
+    unsupported(
+        "it counts " + std::to_string(*count) + " " + what + " and holds " + std::to_string(there),
+        "get the file again, or correct the count");
+}
+
+/// Labels may lack the blanks of names ("Oz 1" is "Oz1").
+bool areSameName(std::string_view name, std::string_view label) {
+    const auto plain = [](std::string_view text) {
+        std::string letters;
+        for (const char c : text) {
+            if (c != ' ' && c != '\t' && c != '_') letters += c;
+        }
+        return letters;
+    };
+    return plain(name) == plain(label);
 }
 
 /// Newer files name the positions, and hold them in a plane and the head's shape as well.
@@ -245,6 +281,7 @@ PointFile decodeElc(std::string_view bytes) {
     std::vector<std::string> names, labels;
     std::vector<Vec3> points, shape;
     double mm = 0, shapeMm = 0;
+    std::optional<std::int64_t> positionCount, shapeCount;
     enum { Header, Positions, Labels, Shape } part = Header;
     while (const auto whole = lines.next()) {
         const std::string_view line = trimmed(*whole);
@@ -261,9 +298,13 @@ PointFile decodeElc(std::string_view bytes) {
             part = Labels;
         } else if (first == "HeadShapePoints") {
             part = Shape;
+        } else if (first.starts_with("NumberPositions")) {
+            positionCount = countOf(line);
+        } else if (first.starts_with("NumberHeadShapePoints")) {
+            shapeCount = countOf(line);
+            part = Header;
         } else if (first == "Positions2D" || first == "Polygons" ||
-                   first.starts_with("NumberPolygons") ||
-                   first.starts_with("NumberHeadShapePoints")) {
+                   first.starts_with("NumberPolygons")) {
             part = Header;
         } else if (part == Positions || part == Shape) {
             const std::size_t colon = line.find(':');
@@ -280,12 +321,19 @@ PointFile decodeElc(std::string_view bytes) {
             damaged("it holds more than 100,000 points");
         }
     }
+    requireCount(positionCount, points.size(), "positions");
+    requireCount(shapeCount, shape.size(), "head shape points");
     if (names.empty()) names = labels;
     if (names.size() != points.size() || (!labels.empty() && labels.size() != points.size())) {
         damaged("it has " + std::to_string(points.size()) + " positions and " +
                 std::to_string(labels.empty() ? names.size() : labels.size()) + " labels");
     }
     for (std::size_t n = 0; n < points.size(); ++n) {
+        if (!labels.empty() && !areSameName(names[n], labels[n])) {
+            unsupported("the position " + std::to_string(n + 1) + " is of " + printable(names[n]) +
+                            ", its label is " + printable(labels[n]),
+                        "give names and labels in one order");
+        }
         add(file, names[n], points[n], kindOf(names[n]));
     }
     const double shapeUnits = mm > 0 && shapeMm > 0 ? shapeMm / mm : 1;
@@ -296,6 +344,19 @@ PointFile decodeElc(std::string_view bytes) {
     return file;
 }
 
+/// What stands before the first tab where three words follow it: then blanks are part of the name.
+/// Else the first word.
+std::string_view sfpName(std::string_view line) {
+    const std::size_t tab = line.find('\t');
+    if (tab != line.npos) {
+        ByteSource words(line.substr(tab));
+        std::size_t count = 0;
+        while (!words.word().empty()) ++count;
+        if (count == 3) return trimmed(line.substr(0, tab));
+    }
+    return ByteSource(line).word();
+}
+
 PointFile decodeSfp(std::string_view bytes) {
     TextLines lines(bytes);
     PointFile file;
@@ -303,14 +364,13 @@ PointFile decodeSfp(std::string_view bytes) {
     while (const auto whole = lines.next()) {
         const std::string_view line = trimmed(*whole);
         if (line.empty() || line.front() == '#') continue;
-        ByteSource words(line);
-        const std::string_view name = words.word();
+        const std::string_view name = sfpName(line);
+        ByteSource words(line.substr(name.size()));
         add(file, name, placeOf(words, name, lines.number()), kindOf(name));
     }
     return file;
 }
 
-/// The points of the first digitizer block.
 /// Colons stand between names; MNE writes others so.
 std::string withoutColons(std::string name) {
     for (std::size_t at = name.find(':'); at != name.npos; at = name.find(':', at)) {
@@ -319,10 +379,14 @@ std::string withoutColons(std::string name) {
     return name;
 }
 
+/// The points of the first digitizer block.
 PointFile decodeFiff(std::string_view bytes) {
     const fiff::Content content = fiff::decode(bytes);
     PointFile file;
     file.format = "FIFF digitizer points";
+    const auto tags = static_cast<std::int64_t>(content.tags.size());
+    requireNoMore({"tags", tags, static_cast<std::int64_t>(bytes.size())}, content.behind,
+                  file.warnings);
     std::size_t block = 1;
     while (block < content.blocks.size() && content.blocks[block].kind != fiff::kIsotrak) ++block;
     if (block >= content.blocks.size()) {
@@ -367,9 +431,9 @@ PointFile decodeFiff(std::string_view bytes) {
 PointFile decoded(std::string_view bytes, std::string_view extension) {
     const std::string fault = extension == ".fif" ? "" : faultOfText(bytes);
     if (!fault.empty()) throw FileError(fault);
-    if (extension == ".tsv") return decodeTsv(bytes);
-    if (extension == ".elc") return decodeElc(bytes);
-    if (extension == ".sfp") return decodeSfp(bytes);
+    if (extension == ".tsv") return decodeTsv(toUtf8(bytes));
+    if (extension == ".elc") return decodeElc(toUtf8(bytes));
+    if (extension == ".sfp") return decodeSfp(toUtf8(bytes));
     if (extension == ".fif") return decodeFiff(bytes);
     unsupported("electrodes are not read from '" + std::string(extension) + "' files",
                 "give _electrodes.tsv, .elc, .sfp or .fif");

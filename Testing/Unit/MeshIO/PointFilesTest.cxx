@@ -165,20 +165,97 @@ TEST(PointFiles, AreNoFormulasWhenWritten) {
     EXPECT_EQ(readPoints(tsv).points[0].name, "=1+1");
 }
 
-TEST(PointFiles, RefuseDamageInOneLine) {
-    const auto refused = [](const std::string& bytes, const char* extension,
-                            const std::optional<std::string>& json = std::nullopt) {
-        try {
-            decodePoints(bytes, extension, "file", json);
-        } catch (const FileError& error) {
-            const std::string what = error.what();
-            EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-            EXPECT_TRUE(what.starts_with("file: ")) << what;
-            return what;
-        }
-        ADD_FAILURE() << "was read: " << bytes;
-        return std::string();
+std::string refused(const std::string& bytes, const char* extension,
+                    const std::optional<std::string>& json = std::nullopt) {
+    try {
+        decodePoints(bytes, extension, "file", json);
+    } catch (const FileError& error) {
+        const std::string what = error.what();
+        EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+        EXPECT_TRUE(what.starts_with("file: ")) << what;
+        return what;
+    }
+    ADD_FAILURE() << "was read: " << bytes;
+    return std::string();
+}
+
+TEST(PointFiles, HoldAsManyPositionsAsTheyCount) {
+    const auto elc = [](const std::string& count, const std::string& shape = "2") {
+        return "NumberPositions" + count + "\nPositions\nCz : 0 0 9\nOz : 0 -9 0\n" +
+               "NumberHeadShapePoints= " + shape + "\nHeadShapePoints\n1 2 3\n4 5 6\n";
     };
+    for (const char* const count : {"= 2", "=2", "=\t2", ""}) {
+        EXPECT_EQ(decodePoints(elc(count), ".elc", "a").points.size(), 4u) << count;
+    }
+    EXPECT_EQ(refused(elc("= 4"), ".elc"),
+              "file: it counts 4 positions and holds 2; get the file again, or correct the count");
+    EXPECT_NE(refused(elc("= 1"), ".elc").find("1 positions and holds 2"), std::string::npos);
+    EXPECT_NE(refused(elc("= 2", "3"), ".elc").find("3 head shape points and holds 2"),
+              std::string::npos);
+    EXPECT_NE(refused(elc("= 2x"), ".elc").find("NumberPositions"), std::string::npos);
+}
+
+TEST(PointFiles, HaveThreeCoordinatesEach) {
+    EXPECT_EQ(refused("Cz 0 0 85\nFp 1 25 78 9\n", ".sfp"),
+              "file: line 2: behind the three coordinates of 'Fp' stands '9'; give x, y and z "
+              "alone, and names without blanks");
+    EXPECT_NE(refused("Cz 90 45 1 2 3\n", ".sfp").find("stands '2'"), std::string::npos);
+    EXPECT_NE(refused("Cz\t1\t2\t3\t4\n", ".sfp").find("stands '4'"), std::string::npos);
+    EXPECT_NE(refused("Positions\n0 50 70 99\nLabels\nCz\n", ".elc").find("stands '99'"),
+              std::string::npos);
+    const PointFile file =
+        decodePoints("Ref 1\t0\t0\t85\nCz 1\t2\t3\nOz\t4 5 6\nE1 \t 7 \t 8 \t 9\nPz 1 1 1 # near\n",
+                     ".sfp", "a");
+    ASSERT_EQ(file.points.size(), 5u);
+    EXPECT_EQ(file.points[0].name, "Ref 1");
+    EXPECT_EQ(file.points[0].point, (Vec3{0, 0, 85}));
+    EXPECT_EQ(file.points[1].name, "Cz");
+    EXPECT_EQ(file.points[1].point, (Vec3{1, 2, 3}));
+    EXPECT_EQ(file.points[2].point, (Vec3{4, 5, 6}));
+    EXPECT_EQ(file.points[3].name, "E1");
+    EXPECT_EQ(file.points[3].point, (Vec3{7, 8, 9}));
+}
+
+TEST(PointFiles, NameColumnsOnce) {
+    EXPECT_EQ(refused("name\tx\tX\ty\tz\nCz\t1\t2\t3\t4\n", ".tsv"),
+              "file: its first line names the column 'x' twice; rename or remove one of them");
+    EXPECT_NO_THROW(decodePoints("name\tx\ty\tz\tnote\tnote\nCz\t1\t2\t3\ta\tb\n", ".tsv", "a"));
+}
+
+TEST(PointFiles, HaveTheSameNamesAndLabels) {
+    const std::string positions = "Positions\nCz : 0 0 9\nF z : 5 0 8\nLabels\n";
+    EXPECT_EQ(decodePoints(positions + "Cz Fz\n", ".elc", "a").points[1].name, "F z");
+    EXPECT_EQ(
+        refused(positions + "Fz Cz\n", ".elc"),
+        "file: the position 1 is of 'Cz', its label is 'Fz'; give names and labels in one order");
+}
+
+TEST(PointFiles, OfLatin1HaveNamesOfUtf8) {
+    for (const char* const extension : {".tsv", ".sfp", ".elc"}) {
+        const PointFile file =
+            decodePoints(pointsText(extension, "0 0 92", "\xC4rm"), extension, "a");
+        EXPECT_EQ(file.points[2].name, "\xC3\x84rm") << extension;
+        const PointFile controls = decodePoints(pointsText(extension, "0 0 92",
+                                                           "a\x9b"
+                                                           "b"),
+                                                extension, "a");
+        EXPECT_EQ(controls.points[2].name, "a b") << extension;
+    }
+}
+
+TEST(PointFiles, OfFiffAreOneFileAlone) {
+    const auto fif = temporaryFile("a.fif");
+    writeFiffPoints(kPoints, fif);
+    const std::string bytes = bytesOf(fif);
+    EXPECT_TRUE(decodePoints(bytes, ".fif", "a").warnings.empty());
+    EXPECT_NE(refused(bytes + bytes, ".fif").find("are two files joined?"), std::string::npos);
+    const PointFile padded = decodePoints(bytes + std::string(64, '\0'), ".fif", "a");
+    EXPECT_EQ(padded.points.size(), kPoints.size());
+    ASSERT_EQ(padded.warnings.size(), 1u);
+    EXPECT_EQ(padded.warnings[0].code, "trailing-bytes");
+}
+
+TEST(PointFiles, RefuseDamageInOneLine) {
     const std::string tsv = "name\tx\ty\tz\nCz\t0\t0\t9\n";
     EXPECT_NE(refused("Cz\t0\t0\t9\n", ".tsv").find("no column 'name'"), std::string::npos);
     EXPECT_NE(refused("name\tx\ty\tz\nCz\t0\t0\n", ".tsv").find("3 cells"), std::string::npos);

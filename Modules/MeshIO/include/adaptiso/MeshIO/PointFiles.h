@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso {
@@ -29,6 +30,7 @@ struct PointFile {
     bool saysUnit = false;                 ///< else the numbers are as stored
     std::optional<CoordinateFrame> frame;  ///< empty: unknown, or one of its own (frameName)
     std::string frameName;                 ///< as the file calls it; may be empty
+    std::vector<Warning> warnings;
 };
 
 /// Reads electrodes, landmarks and head points:
