@@ -289,6 +289,7 @@ void encodeGifti(const MeshRecord& record, ByteSink& sink) {
 MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options) {
     Unpacking unpacking(options.storedBytes > 0 ? options.storedBytes : bytes.size());
     GiftiFile content = parseGifti(bytes);
+    unpacking.warnings = std::move(content.warnings);
     requireNoMore({"arrays", std::ssize(content.arrays), std::ssize(bytes)}, content.behind,
                   unpacking.warnings);
     const bool hasOthers = content.arrays.size() > 2;

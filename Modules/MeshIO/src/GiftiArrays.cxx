@@ -16,6 +16,7 @@ public:
                         "it is no GIFTI file: get it again");
         }
         text_ = nullptr;
+        if (depth_ == 1) file.count = attributeOr(attributes, "NumberOfDataArrays", "");
         if (element == "DataArray") {
             file.arrays.push_back({attributes});
             isInArray_ = true;
@@ -67,7 +68,18 @@ private:
 GiftiFile parseGifti(std::string_view bytes) {
     GiftiHandler handler;
     parseXml(bytes, handler);
-    return std::move(handler.file);
+    GiftiFile& file = handler.file;
+    if (!trimmed(file.count).empty()) {
+        Counted arrays{"arrays", toInteger(trimmed(file.count), "NumberOfDataArrays"), 1};
+        const std::int64_t there = std::ssize(file.arrays);
+        if (arrays.count == 0 && there > 0) setToThere(arrays, there, file.warnings);
+        if (arrays.count != there) {
+            unsupported("its NumberOfDataArrays is " + std::to_string(arrays.count) +
+                            ", and it holds " + std::to_string(there),
+                        "get the file again, or correct the count");
+        }
+    }
+    return std::move(file);
 }
 
 GiftiShape shapeOf(const XmlAttributes& attributes, std::string_view what) {

@@ -45,9 +45,11 @@ struct GiftiFile {
     std::vector<std::pair<XmlAttributes, std::string>> labels;  ///< with their names
     GiftiMetadata metadata;
     std::string_view behind{};  ///< what follows the document
+    std::string count{};        ///< NumberOfDataArrays; may be empty
+    std::vector<Warning> warnings;
 };
 
-/// \throws FileError  it is no GIFTI file
+/// \throws FileError  it is no GIFTI file, or counts other arrays than it holds
 GiftiFile parseGifti(std::string_view bytes);
 
 /// Reads the data of an array that lie in a file of their own (ExternalFileBinary, as SPM writes):

@@ -96,6 +96,13 @@ public:
 
     MeshFile finish() && {
         // OBJ counts nothing, but numbers go on through a file, and begin anew in the next
+        if (isAmongPoints_ && beginsWithFaces_) noteBlock();
+        if (blocks_ > 1 && usedBlocks_ < blocks_ && !beginsWithFaces_) {
+            unsupported(
+                "it holds points behind its faces, and the faces that follow them number none "
+                "of them",
+                "are two files joined? give each by itself");
+        }
         if (blocks_ > 1 && largestUsed_ < largestBlock_) {
             unsupported(
                 "it holds points behind its faces, and no face numbers them from where the "
@@ -144,17 +151,27 @@ private:
         if (corners < 3) malformed("a face has " + std::to_string(corners) + " corners");
         if (corners > 3) refusePolygon(corners);
         mesh_.triangles.push_back(triangle);
+        if (isAmongPoints_) noteBlock();
+        if (mesh_.points.empty()) beginsWithFaces_ = true;
         isAmongPoints_ = false;
-        largestUsed_ = std::max(largestUsed_, *std::ranges::max_element(triangle));
+        const VertexId largest = *std::ranges::max_element(triangle);
+        largestUsed_ = std::max(largestUsed_, largest);
+        if (!isBlockUsed_ && largest >= blockBegin_) {
+            isBlockUsed_ = true;
+            ++usedBlocks_;
+        }
     }
 
     void beginPoint() {
-        if (!isAmongPoints_) {
-            ++blocks_;
-            blockPoints_ = 0;
-        }
+        if (!isAmongPoints_) blockBegin_ = std::ssize(mesh_.points);
         isAmongPoints_ = true;
-        largestBlock_ = std::max(largestBlock_, ++blockPoints_);
+    }
+
+    /// Of points with faces behind them: those at the end may be landmarks.
+    void noteBlock() {
+        ++blocks_;
+        isBlockUsed_ = false;
+        largestBlock_ = std::max(largestBlock_, std::ssize(mesh_.points) - blockBegin_);
     }
 
     /// "v", "v/vt", "v//vn" or "v/vt/vn"; "v/", "v//" and "v/vt/" have no normal.
@@ -189,7 +206,10 @@ private:
     std::vector<std::int64_t> normalOf_;  ///< of each vertex; kNone where no face gave one yet
     bool oneNormalEach_ = true;
     bool isAmongPoints_ = false;  ///< no face since the last point
-    std::int64_t blocks_ = 0, blockPoints_ = 0, largestBlock_ = 0;  ///< of points between faces
+    bool beginsWithFaces_ = false;
+    bool isBlockUsed_ = true;                                      ///< by the faces behind it
+    std::int64_t blocks_ = 0, usedBlocks_ = 0, largestBlock_ = 0;  ///< of points between faces
+    std::int64_t blockBegin_ = 0;
     VertexId largestUsed_ = -1;
 };
 

@@ -115,7 +115,7 @@ void encodeLabels(const std::vector<PointLabel>& labels, ByteSink& sink) {
 
 /// GIFTI files of values at points. decodePointData() checks what is read, and names the file.
 PointData decodeGiftiData(std::string_view bytes) {
-    const GiftiFile found = parseGifti(bytes);
+    GiftiFile found = parseGifti(bytes);
     PointData data;
     data.format = PointDataFormat::Gifti;
     for (const auto& [attributes, name] : found.labels) {
@@ -123,6 +123,7 @@ PointData decodeGiftiData(std::string_view bytes) {
     }
     data.metadata = kept(found.metadata, false);
     Unpacking unpacking(bytes.size());
+    unpacking.warnings = std::move(found.warnings);
     requireNoMore({"arrays", std::ssize(found.arrays), std::ssize(bytes)}, found.behind,
                   unpacking.warnings);
     for (const GiftiArray& array : found.arrays) {
@@ -329,12 +330,17 @@ PointData decodeAnnot(std::string_view bytes) {
     data.points = source.number<std::int32_t>(kBig);
     meshio::requireRoom("labels", data.points, 2 * sizeof(std::int32_t), source.left());
     std::vector<std::int32_t> labels(static_cast<std::size_t>(data.points));
+    std::vector<bool> isLabelled(labels.size());
     for (std::int64_t i = 0; i < data.points; ++i) {
         const std::int64_t point = source.number<std::int32_t>(kBig);
         if (point < 0 || point >= data.points) {
             damaged("it has a label for the point " + std::to_string(point) + " of " +
                     std::to_string(data.points));
         }
+        if (isLabelled[static_cast<std::size_t>(point)]) {
+            damaged("it has two labels for the point " + std::to_string(point));
+        }
+        isLabelled[static_cast<std::size_t>(point)] = true;
         labels[static_cast<std::size_t>(point)] = source.number<std::int32_t>(kBig);
     }
     meshio::requireNoMore({"labels", data.points, 2 * sizeof(std::int32_t)},

@@ -98,6 +98,17 @@ bool haveAttributeBytes(ByteSource source, std::int64_t count) {
     return isLonger && source.left() < kTriangleBytes;
 }
 
+/// True if the bytes are headers, each with the triangles that it counts.
+bool areWholeFiles(ByteSource source) {
+    while (source.left() >= kHeaderBytes + sizeof(std::uint32_t)) {
+        source.take(kHeaderBytes);
+        const auto count = source.number<std::uint32_t>(std::endian::little);
+        if (count == 0 || source.left() / kTriangleBytes < count) return false;
+        source.take(kTriangleBytes * std::size_t{count});
+    }
+    return source.atEnd();
+}
+
 MeshFile decodeBinary(ByteSource source, FrameMarks marks) {
     MeshFile file;
     marks.addText(source.take(kHeaderBytes));
@@ -128,7 +139,9 @@ MeshFile decodeBinary(ByteSource source, FrameMarks marks) {
     constexpr std::size_t kBegin = kHeaderBytes + sizeof(std::uint32_t);
     const bool isHeaderAndTriangles =
         rest.size() >= kBegin && (rest.size() - kBegin) % kTriangleBytes == 0;
-    if (isHeaderAndTriangles && !areZeros(rest)) refuseSecondFile(triangles, "STL");
+    if ((isHeaderAndTriangles && !areZeros(rest)) ||
+        (!rest.empty() && areWholeFiles(ByteSource(rest))))
+        refuseSecondFile(triangles, "STL");
     requireNoMore(triangles, rest, file.warnings);
     if (attributes > 0) {
         file.warnings.push_back({"attributes-left-out",

@@ -94,6 +94,7 @@ private:
         } else if (section == "point_data" || section == "cell_data") {
             tuples_ = line.integerWord("the number of tuples");
             isPointData_ = section == "point_data";
+            if (isPointData_) requireOneEach(tuples_);
         } else if (section == "normals") {
             decodeNormals(line);
         } else if (const std::int64_t components = componentsOf(section); components > 0) {
@@ -149,7 +150,22 @@ private:
         }
     }
 
+    /// Refuses values that are not as many as the points.
+    void requireOneEach(std::int64_t tuples) const {
+        if (tuples == std::ssize(file_.mesh.points)) return;
+        damaged("it has values for " + std::to_string(tuples) + " points, and " +
+                std::to_string(file_.mesh.points.size()) + " points");
+    }
+
+    /// Refuses a second section of a surface.
+    static void requireFirst(bool isFirst, std::string_view section) {
+        if (isFirst) return;
+        unsupported("it has two sections " + std::string(section),
+                    "are two files joined? give each by itself");
+    }
+
     void decodePoints(ByteSource& line) {
+        requireFirst(file_.mesh.points.empty(), "POINTS");
         const std::int64_t count = line.integerWord("the number of points");
         const auto values = readVectors(count, parseType(line.requireWord("a type")), "points");
         file_.mesh.points = values;
@@ -164,6 +180,7 @@ private:
     }
 
     void decodePolygons(ByteSource& line) {
+        requireFirst(file_.mesh.triangles.empty(), "POLYGONS");
         ByteSource counts = line;
         const std::int64_t count = counts.integerWord("the number of polygons");
         const std::vector<std::int64_t> cells = readCells(line);
@@ -304,6 +321,7 @@ private:
                 const std::string text = takeStrings(tuples, components);
                 if (!marks_.frame()) addField(name, text, fieldMarks_);
             } else {
+                if (isPointData_ && tuples > 0) requireOneEach(tuples);
                 decodeArray(name, tuples, components, parseType(type));
             }
         }

@@ -312,7 +312,14 @@ std::string_view behindAppended(std::string_view appendedData, std::size_t dataE
         if (at == std::string_view::npos) return {};
         rest = rest.substr(at + mark.size());
     }
-    return trimmed(rest);
+    rest = trimmed(rest);
+    constexpr std::string_view kBegin = "<!--", kEnd = "-->";
+    while (rest.starts_with(kBegin)) {
+        const std::size_t end = rest.find(kEnd, kBegin.size());
+        if (end == std::string_view::npos) break;
+        rest = trimmed(rest.substr(end + kEnd.size()));
+    }
+    return rest;
 }
 
 std::int64_t pieceCount(const VtpHandler& handler, std::string_view name) {

@@ -201,6 +201,62 @@ TEST(Counts, JoinedObjFilesAreKnownByTheirNumbers) {
     EXPECT_EQ(decoded(body + "f 1 2 3\nv 1 1 0\nf 2 4 3\n", "a.obj").mesh.triangles.size(), 2U);
 }
 
+TEST(Counts, ObjMayEndWithLandmarks) {
+    const std::string body = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    EXPECT_EQ(decoded(body + "f 1 2 3\nv 5 5 5\n", "a.obj").mesh.points.size(), 4U);
+    EXPECT_EQ(decoded(body + "f 1 2 3\n" + body + body, "a.obj").mesh.triangles.size(), 1U);
+}
+
+TEST(Counts, JoinedObjFilesOfSeveralBodiesAreRefused) {
+    const std::string body = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const std::string one = body + "f 1 2 3\n";
+    const std::string several = one + body + "f 4 5 6\n" + body + "f 7 8 9\n";
+    EXPECT_EQ(decoded(several, "a.obj").mesh.triangles.size(), 3U);
+    for (const std::string& joined : {one + several, several + one, several + several}) {
+        EXPECT_NE(fault(joined, "a.obj").find("are two files joined?"), std::string::npos);
+    }
+}
+
+TEST(Counts, OfGiftiArraysAreHeldAgainstThem) {
+    const std::string gifti = written(ball(), "a.gii");
+    const std::string count = "NumberOfDataArrays=\"2\"";
+    for (const char* const other : {"1", "3"}) {
+        const std::string bytes =
+            replaced(gifti, count, "NumberOfDataArrays=\"" + std::string(other) + "\"");
+        EXPECT_NE(fault(bytes, "a.gii").find("NumberOfDataArrays is " + std::string(other)),
+                  std::string::npos);
+    }
+    EXPECT_EQ(codesOf(decoded(replaced(gifti, count, ""), "a.gii")), Codes{});
+    EXPECT_EQ(codesOf(decoded(replaced(gifti, count, "NumberOfDataArrays=\"0\""), "a.gii")),
+              Codes{"count-unset"});
+}
+
+TEST(Counts, OfVtkAreThoseOfItsPoints) {
+    const std::string points = "POINTS 3 float\n0 0 0 1 0 0 0 1 0\n",
+                      polygon = "POLYGONS 1 4\n3 0 1 2\n";
+    const std::string head = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n";
+    const std::string vtk = head + points + polygon;
+    const std::string field = "POINT_DATA 3\nFIELD f 1\n";
+    EXPECT_EQ(codesOf(decoded(vtk + field + "a 1 3 float\n1 2 3\n", "a.vtk")), Codes{});
+    EXPECT_NE(fault(vtk + field + "a 1 2 float\n1 2\n", "a.vtk").find("values for 2 points"),
+              std::string::npos);
+    EXPECT_NE(fault(vtk + "POINT_DATA 2\nSCALARS s float\nLOOKUP_TABLE default\n1 2\n", "a.vtk")
+                  .find("values for 2 points, and 3 points"),
+              std::string::npos);
+    EXPECT_NE(fault(vtk + points, "a.vtk").find("two sections POINTS"), std::string::npos);
+    EXPECT_NE(fault(vtk + polygon, "a.vtk").find("two sections POLYGONS"), std::string::npos);
+}
+
+TEST(Counts, ACommentBehindVtpIsNothing) {
+    const std::string vtp = written(ball(), "a.vtp");
+    EXPECT_EQ(codesOf(decoded(vtp + "<!-- end -->\n<!-- > -->\n", "a.vtp")), Codes{});
+}
+
+TEST(Counts, SeveralStlFilesBehindOneAreRefused) {
+    const std::string small = written(testing::tetrahedron(), "a.stl");
+    expectMore(written(ball(), "b.stl") + small + small, "a.stl", "another surface");
+}
+
 TEST(Counts, MoreThanAreThereAreRefused) {
     std::string stl = written(ball(), "a.stl");
     const std::uint32_t more = 321;

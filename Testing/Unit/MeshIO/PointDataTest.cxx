@@ -216,6 +216,7 @@ TEST(PointData, WhatIsNotReadIsRefusedInALine) {
         {"\xFF\xFF\xFF" + big32(-3) + big32(1) + big32(1) + big32(0), Curv, "-3 values"},
         {"\xFF\xFF\xFF" + big32(0) + big32(1) + big32(1), Curv, "holds no values"},
         {big32(2) + big32(5) + big32(1) + big32(1) + big32(1), Annot, "the point 5 of 2"},
+        {big32(2) + big32(1) + big32(1) + big32(1) + big32(1), Annot, "two labels for the point 1"},
         {big32(900000000), Annot, "900000000"},
         {two + big32(1) + big32(-3), Annot, "unknown version"},
         {two + big32(1) + big32(-2) + big32(1) + text32("x") + big32(400000000), Annot, "labels"},
