@@ -108,7 +108,8 @@ std::optional<ZarrJson> readZarrJson(const ZarrStore& store, const std::string& 
     // writers of Python put NaN into fill_value as a bare word, which JSON has not
     ZarrJson json = parseJson<ZarrJson>(*text);
     if (json.is_discarded() || !json.is_object()) {
-        refuse(store.root() / key, "is damaged: it is no JSON object", "get the dataset again");
+        refuse(store.root() / key, "is damaged: it is no JSON object, or has a key twice",
+               "get the dataset again");
     }
     return json;
 }

@@ -229,6 +229,29 @@ LabelTable decodeColorFirst(const Rows& rows) {
     return found.finish(true);
 }
 
+/// True if `values`, one of each row, are what tables have for opacity.
+bool isOpacity(const std::set<double>& values) {
+    constexpr std::array kUsual{0.0, 1.0, 255.0};
+    return values.size() == 1 && std::ranges::count(kUsual, *values.begin()) == 1;
+}
+
+/// True if the first of four numbers at the end is the name's: names would be the same without it,
+/// and the last is no usual opacity.
+bool areNamesNumbered(const Rows& rows) {
+    std::set<std::string> names, numberedNames;
+    std::set<double> last;
+    std::size_t count = 0;
+    for (const Row& row : rows) {
+        if (row.trailing() > 4) return false;
+        if (row.trailing() < 4 || row.size() < 6) continue;
+        ++count;
+        names.insert(row.name(1, row.size() - 4));
+        numberedNames.insert(row.name(1, row.size() - 3));
+        last.insert(*realNumber(row.words.back()));
+    }
+    return !isOpacity(last) && 2 * names.size() <= count && numberedNames.size() == count;
+}
+
 /// How many numbers follow the name in each row: R, G, B, perhaps A, and FreeSurfer's type of
 /// tissue behind these, which a table may have in some rows alone. A name may end in a number too;
 /// opacity, which is the same in most rows, tells.
@@ -236,7 +259,8 @@ std::vector<std::size_t> colorNumbers(const Rows& rows) {
     const auto numberAt = [](const Row& row, std::size_t fromEnd) {
         return *realNumber(row.words[row.size() - fromEnd]);
     };
-    const bool hasOpacity = areMost(rows, [](const Row& row) { return row.trailing() >= 4; });
+    const bool hasOpacity = areMost(rows, [](const Row& row) { return row.trailing() >= 4; }) &&
+                            !areNamesNumbered(rows);
     std::set<double> opacities, last, beforeLast;
     for (const Row& row : rows) {
         if (row.trailing() == 4) opacities.insert(numberAt(row, 1));
@@ -244,10 +268,6 @@ std::vector<std::size_t> colorNumbers(const Rows& rows) {
         last.insert(numberAt(row, 1));
         beforeLast.insert(numberAt(row, 2));
     }
-    const auto isOpacity = [](const std::set<double>& values) {
-        constexpr std::array kUsual{0.0, 1.0, 255.0};
-        return values.size() == 1 && std::ranges::count(kUsual, *values.begin()) == 1;
-    };
     const bool haveAll = opacities.empty() && isOpacity(beforeLast);
     if (haveAll) opacities = beforeLast;
     if (opacities.empty() || isOpacity(last)) opacities.merge(std::set(last));
@@ -303,8 +323,12 @@ LabelTable decodeColorLast(const Rows& rows, bool isSlicer) {
     return found.finish();
 }
 
-/// Index, name and #RRGGBB.
-LabelTable decodeHexLast(const Rows& rows) {
+bool isHex(std::string_view word) {
+    return word.starts_with('#') && parseColor(word);
+}
+
+/// Index, and a name with #RRGGBB behind it or before.
+LabelTable decodeHex(const Rows& rows, std::string_view text, bool isColorFirst) {
     Collector found("names with colours");
     for (const Row& row : rows) {
         if (row.size() < 3) {
@@ -312,23 +336,30 @@ LabelTable decodeHexLast(const Rows& rows) {
         }
         LabelEntry entry;
         entry.value = valueOf(row.words[0], row.line);
-        entry.name = row.name(1, row.size() - 1);
-        entry.color = parseColor(row.words.back());
-        if (!entry.color) found.leaveColorOut(row.where(), row.words.back());
+        entry.name = isColorFirst ? row.name(2, row.size()) : row.name(1, row.size() - 1);
+        entry.color = found.colorOf(isColorFirst ? row.words[1] : row.words.back(), row.where(),
+                                    !isColorFirst && endsText(row.line, text));
         found.add(std::move(entry));
     }
     return found.finish();
 }
 
 /// True if the last word of every row is a number that is no part of its name: the names are
-/// distinct without it ("Precentral_L 2001", unlike "Area 44").
+/// distinct without it ("Precentral_L 2001", unlike "Area 44"), and all have three digits ("Crus 1"
+/// has not) or are the indices, counted from another number (AAL3, AICHA).
 bool endsInCode(const Rows& rows) {
     std::set<std::string> names;
+    std::set<std::int64_t> offsets;
+    bool areLong = true;
     for (const Row& row : rows) {
-        if (row.size() < 3 || !wholeNumber(row.words.back())) return false;
+        const auto code = row.size() < 3 ? std::nullopt : wholeNumber(row.words.back());
+        if (!code) return false;
+        areLong = areLong && row.words.back().size() >= 3;
+        offsets.insert(*code - wholeNumber(row.words[0]).value_or(0));
         names.insert(row.name(1, row.size() - 1));
     }
-    return 2 * names.size() > rows.size();
+    const bool areIndices = offsets.size() == 1 && rows.size() > 1;
+    return 2 * names.size() > rows.size() && (areLong || areIndices);
 }
 
 /// Index and name, perhaps a code behind it: MRIcron.
@@ -392,10 +423,11 @@ LabelTable decodeRows(std::string_view text) {
         return decodeColorLast(rows, isSlicer);
     }
     if (isMeasured) refuseColumns("numbers stand behind the name, but no colour alone");
-    const auto endsInHex = [](const Row& row) {
-        return row.size() > 2 && row.words.back().starts_with('#') && parseColor(row.words.back());
-    };
-    return areMost(rows, endsInHex) ? decodeHexLast(rows) : decodeNames(rows);
+    const auto beginsWithHex = [](const Row& row) { return row.size() > 2 && isHex(row.words[1]); };
+    const auto endsInHex = [](const Row& row) { return row.size() > 2 && isHex(row.words.back()); };
+    const bool isHexFirst = areMost(rows, beginsWithHex);
+    return isHexFirst || areMost(rows, endsInHex) ? decodeHex(rows, text, isHexFirst)
+                                                  : decodeNames(rows);
 }
 
 }  // namespace adaptiso::labelnames

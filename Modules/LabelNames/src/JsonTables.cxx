@@ -1,5 +1,4 @@
 // Label tables in JSON: by value, as a list, or as niivue has them.
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "Rows.h"
@@ -46,21 +45,6 @@ std::optional<Channels> channelsOf(std::initializer_list<const Json*> numbers) {
     return channels;
 }
 
-/// Channels are 0 to 255, or 0 to 1 where none of a colour is above 1.
-void addColored(Collector& found, LabelEntry entry, const Channels& channels) {
-    const bool areParts = std::ranges::max(channels) <= 1;
-    LabelColor color{};
-    for (std::size_t n = 0; n < 3; ++n) {
-        if (!(channels[n] >= 0 && channels[n] <= 255)) {
-            found.leaveColorOut("label " + std::to_string(entry.value), formatShort(channels[n]));
-            return found.add(std::move(entry));
-        }
-        color[n] = static_cast<std::uint8_t>(std::lround((areParts ? 255 : 1) * channels[n]));
-    }
-    entry.color = color;
-    found.add(std::move(entry));
-}
-
 void addEntry(Collector& found, std::int32_t key, const Json& json) {
     LabelEntry entry;
     entry.value = key;
@@ -83,9 +67,10 @@ void addEntry(Collector& found, std::int32_t key, const Json& json) {
         entry.color = parseColor(text);
         if (entry.color) return found.add(std::move(entry));
     }
-    if (channels) return addColored(found, std::move(entry), *channels);
+    const std::string where = "label " + std::to_string(key);
+    if (channels) return found.add(std::move(entry), *channels, where);
     if (color != nullptr) {
-        found.leaveColorOut("label " + std::to_string(key),
+        found.leaveColorOut(where,
                             color->is_string() ? color->get<std::string>() : "no text or numbers");
     }
     found.add(std::move(entry));
@@ -100,13 +85,13 @@ LabelTable decodeList(const Json& list) {
         if (key == nullptr) refuseKind("its list holds something without an index");
         addEntry(found, keyOf(*key), each);
     }
-    return found.finish();
+    return found.finish(true);
 }
 
 LabelTable decodeByValue(const Json& object) {
     Collector found("JSON");
     for (const auto& [key, each] : object.items()) addEntry(found, keyOf(Json(key)), each);
-    return found.finish();
+    return found.finish(true);
 }
 
 /// Lists of reds, greens, blues, values and names.
@@ -159,7 +144,7 @@ bool isByValue(const Json& object) {
 
 LabelTable decodeJson(std::string_view text) {
     const Json json = parseJson<Json>(text);
-    if (json.is_discarded()) refuseKind("its JSON is damaged");
+    if (json.is_discarded()) refuseKind("its JSON is damaged, or has a key twice");
     if (json.is_array() && !json.empty()) return decodeList(json);
     if (json.is_object()) {
         if (json.contains("labels") && json.contains("R")) return decodeNiivue(json);

@@ -62,6 +62,10 @@ std::vector<Line> linesOf(std::string_view text) {
     return lines;
 }
 
+bool endsText(const Line& line, std::string_view text) {
+    return line.text.data() + line.text.size() == text.data() + text.size();
+}
+
 std::string place(const Line& line) {
     return linePlace(line.number);
 }
@@ -144,6 +148,17 @@ void Collector::add(LabelEntry entry, const Channels& channels, const std::strin
 
 void Collector::leaveColorOut(const std::string& where, std::string_view text) {
     if (unread_++ == 0) firstUnread_ = "that of " + where + " is " + printable(text);
+}
+
+std::optional<LabelColor> Collector::colorOf(std::string_view text, const std::string& where,
+                                             bool endsTable) {
+    constexpr std::size_t kLongestShort = 5;  // #RGBA
+    const bool isShort = text.starts_with('#') && text.size() <= kLongestShort;
+    std::optional<LabelColor> color;
+    if (!(isShort && endsTable && hasLongColor_)) color = parseColor(text);
+    hasLongColor_ = hasLongColor_ || (color && !isShort);
+    if (!color && !text.empty()) leaveColorOut(where, text);
+    return color;
 }
 
 void Collector::scaleColors(bool areParts) {

@@ -28,6 +28,9 @@ struct Line {
 /// The lines of a text; those that begin with # are left out.
 std::vector<Line> linesOf(std::string_view text);
 
+/// True if nothing follows `line`, not even a line's end.
+bool endsText(const Line& line, std::string_view text);
+
 /// "line 7: "
 std::string place(const Line& line);
 
@@ -60,6 +63,10 @@ public:
     /// A colour is for show: one that can't be read becomes a warning.
     /// \param where  "line 7" or "label 7"
     void leaveColorOut(const std::string& where, std::string_view text);
+    /// The colour that `text` is. Empty where it can't be read, and for a short form that ends the
+    /// whole table though another colour is long: it may be cut off.
+    std::optional<LabelColor> colorOf(std::string_view text, const std::string& where,
+                                      bool endsTable);
 
     /// Entries by value. \param areParts  channels are 0 to 1 even if all are whole numbers
     /// \throws FileError  no entry
@@ -76,6 +83,7 @@ private:
     LabelTable table_;
     std::map<std::int32_t, std::size_t> places_;
     std::vector<Raw> raws_;
+    bool hasLongColor_ = false;
     std::int64_t repeats_ = 0, unread_ = 0;
     std::int32_t firstRepeat_ = 0;
     std::string firstUnread_;

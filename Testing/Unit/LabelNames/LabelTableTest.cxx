@@ -313,6 +313,78 @@ TEST(LabelTable, NamesTheLineThatIsWrong) {
     EXPECT_NE(refusalOf("LabelValue,Name\n1,\"a\n").find("quote is not closed"), std::string::npos);
 }
 
+TEST(LabelTable, RefusesRowsWithOtherCellsThanTheHeader) {
+    for (const auto& [text, line] :
+         {std::pair{"index,name\n1,\"Cortex, left\"\n2,Cortex, right\n", "line 3: it has 3 fields"},
+          {"index,name,color\n1,Alpha,#ff0000\n2,Cortex, right,#00ff00\n", "line 3"},
+          {"index\tname\tabbreviation\tcolor\n1\tAlpha\t#ff0000\n", "line 2: it has 3 fields"},
+          {"index\tname\n1\tAlpha\tfoo\n2\tBeta\n", "line 2"}}) {
+        EXPECT_NE(refusalOf(text).find(line), std::string::npos) << text << refusalOf(text);
+    }
+    // cells that lack, or are empty, at the end
+    EXPECT_EQ(entryOf(decoded("index\tname\tcolor\n1\tAlpha\t\t\t\n2\tBeta\n"), 2).name, "Beta");
+}
+
+TEST(LabelTable, TakesNumbersOfNamesForNoColour) {
+    const LabelTable areas =
+        decoded("1 Area 44 255 10 20\n2 Area 45 0 255 30\n3 Area 46 40 0 255\n");
+    EXPECT_EQ(entryOf(areas, 1), (LabelEntry{1, "Area 44", "", LabelColor{255, 10, 20}}));
+    EXPECT_EQ(entryOf(areas, 3), (LabelEntry{3, "Area 46", "", LabelColor{40, 0, 255}}));
+    EXPECT_EQ(entryOf(decoded("1 a 255 128 0 100\n2 b 1 2 3 50\n"), 1),
+              (LabelEntry{1, "a", "", kOrange}));
+    EXPECT_EQ(entryOf(decoded("1 a 255 128 0 255\n2 a 1 2 3 255\n"), 1),
+              (LabelEntry{1, "a", "", kOrange}));
+    const LabelTable lobules = decoded("1 Crus 1\n2 Lobule 5\n3 Vermis 6\n");
+    EXPECT_EQ(entryOf(lobules, 2).name, "Lobule 5");
+    EXPECT_EQ(entryOf(decoded("1 Precentral_L 1\n2 Precentral_R 2\n"), 2).name, "Precentral_R");
+}
+
+TEST(LabelTable, TakesAMeasureForNoIndex) {
+    const LabelTable measured = decoded("label\tname\tvalue\n1\tAlpha\t3\n3\tGamma\t1\n");
+    EXPECT_EQ(entryOf(measured, 1).name, "Alpha");
+    EXPECT_EQ(entryOf(measured, 3).name, "Gamma");
+    for (const char* const text :
+         {"id\tname\tindex\n1\tAlpha\t0\n2\tBeta\t1\n", "id,name,value\n1,Alpha,2\n2,Beta,1\n"}) {
+        EXPECT_NE(refusalOf(text).find("may both be the labels"), std::string::npos) << text;
+    }
+    EXPECT_EQ(entryOf(decoded("index\tname\tid\n1\tAlpha\t2001\n2\tBeta\t2002\n"), 2).name, "Beta");
+    EXPECT_EQ(entryOf(decoded("value,label\n3,Alpha\n1,Beta\n"), 3).name, "Alpha");
+}
+
+TEST(LabelTable, ScalesJsonsColoursTogether) {
+    const LabelTable whole = decoded(
+        R"([{"index": 1, "name": "a", "color": [1, 1, 1]},
+            {"index": 2, "name": "b", "color": [255, 128, 0]}])");
+    EXPECT_EQ(entryOf(whole, 1).color, (LabelColor{1, 1, 1}));
+    EXPECT_EQ(entryOf(whole, 2).color, kOrange);
+    EXPECT_EQ(entryOf(decoded(R"([{"index": 1, "name": "a", "color": [1, 0, 0]}])"), 1).color,
+              kRed);
+}
+
+TEST(LabelTable, RefusesKeysThatJsonHasTwice) {
+    for (const char* const text :
+         {R"({"1": "a", "1": "b"})", R"({"1": {"name": "a", "n\u0061me": "b"}})"}) {
+        EXPECT_NE(refusalOf(text).find("a key twice"), std::string::npos) << text;
+    }
+}
+
+TEST(LabelTable, LeavesAColourOutThatMayBeCutOff) {
+    for (const char* const text : {"index\tname\tcolor\n1\ta\t#ff0000\n2\tb\t#0000",
+                                   "1 a #ff0000\n2 b #0000ff\n3 c #0000"}) {
+        const LabelTable table = decoded(text);
+        EXPECT_EQ(table.entries.back().color, std::nullopt) << text;
+        ASSERT_EQ(table.warnings.size(), 1U) << text;
+        EXPECT_EQ(table.warnings[0].code, "colors-not-read");
+    }
+    EXPECT_EQ(entryOf(decoded("index\tname\tcolor\n1\ta\t#f00\n2\tb\t#00f"), 2).color,
+              (LabelColor{0, 0, 255}));
+}
+
+TEST(LabelTable, ReadsHexColoursBeforeNames) {
+    const LabelTable table = decoded("1 #ff8000 Left Femur\n2 #00ff00 Beta\n");
+    EXPECT_EQ(entryOf(table, 1), (LabelEntry{1, "Left Femur", "", kOrange}));
+}
+
 TEST(LabelTable, RefusesWhatIsNoTable) {
     for (const std::string& text :
          {std::string(), std::string("   \n"), std::string("hello\nworld\n"), std::string("{}"),
