@@ -71,7 +71,7 @@ class Truth(CheckTest):
         said = self.surface((points, triangles))
         self.assertFalse(said["selfIntersections"]["isComplete"])
         self.assertGreater(said["selfIntersections"]["pairCount"], 100000)
-        self.assertRegex(finding(said, "no self-intersection"),
+        self.assertRegex(finding(said, "noSelfIntersections"),
                          r"^more than [\d,]+00,000 pairs of triangles cross; first: triangles ")
         self.assertIn("noSelfIntersections", said["failed"])
 

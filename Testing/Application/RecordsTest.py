@@ -32,10 +32,11 @@ class RecordsTest(BatchTest):
         text = self.path(page).read_text()
         parsed = Page(text)
         cells = [cell.replace("\xa0", " ") for cell in parsed.cells]
-        width = 9
-        rows = [cells[n:n + width] for n in range(width, len(cells), width)]
+        width = cells.index("seconds") + 1  # columns that would say nothing are left out
+        rows = [dict(zip(cells[:width], cells[n:n + width])) for n in range(width, len(cells), width)]
         title = text[text.index("<h1"):text.index("</h1>")]
-        return ({(row[1], row[2].removeprefix("adaptiso-")): (row[0][2:], row[4]) for row in rows},
+        return ({(row["name"], row.get("program", "adaptiso-mesh").removeprefix("adaptiso-")):
+                 (row["verdict"][2:], row["result"]) for row in rows},
                 title[title.index(">") + 1:])
 
 
@@ -77,7 +78,7 @@ class Skipping(RecordsTest):
                 (lambda: record.write_text("[]"), "its record is damaged"),
                 (lambda: record.write_bytes(b"\xff\0"), "its record is damaged"),
                 (lambda: edit(keptOutputs=7), "its record is damaged"),
-                (lambda: edit(keptOutputs=[], outputs=[]), "it holds no surface"),
+                (lambda: edit(keptOutputs=[], outputs=[]), "it lacks a surface"),
                 (lambda: edit(schema="adaptiso-record/9"), "its record is of another version"),
                 (lambda: edit(build="adaptiso-mesh 0.0.1"), "another version has made it"),
                 (lambda: edit(ended=False), "its last run did not end"),

@@ -208,7 +208,7 @@ class Warnings(unittest.TestCase):
     def logged(self, image, level, **options):
         with self.assertLogs("adaptiso", "WARNING") as logs:
             mesh = adaptiso.surface(image, level, **options)
-        codes = [warning["code"] for warning in mesh.report()["warnings"]]
+        codes = [warning["code"] for warning in mesh.report["warnings"]]
         return logs.output, codes
 
     def test_labels_are_named_where_the_level_lies_among_them(self):

@@ -7,6 +7,7 @@
 #include "Codecs.h"
 #include "Fiff.h"
 #include "adaptiso/Core/Surplus.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/Xml.h"
 
@@ -16,8 +17,14 @@ namespace {
 constexpr const char* kRemedy =
     "are two files joined? give each by itself; or correct the count, or get the file again";
 
+/// Words of the file, as PLY's elements.
+std::string shownWhat(const Counted& counted) {
+    constexpr std::size_t kMost = 40;
+    return visibleAscii(counted.what.substr(0, kMost));
+}
+
 std::string behind(const Counted& counted) {
-    return " behind the " + std::to_string(counted.count) + " " + std::string(counted.what) +
+    return " behind the " + std::to_string(counted.count) + " " + shownWhat(counted) +
            " that it counts";
 }
 
@@ -41,7 +48,7 @@ void warn(const Counted& counted, std::string_view rest, std::vector<Warning>& w
     warnings.push_back(
         {"trailing-bytes", std::to_string(rest.size()) + " bytes" + (isPadding ? ", all 0," : "") +
                                " follow the " + std::to_string(counted.count) + " " +
-                               std::string(counted.what) + " that it counts; they were left out"});
+                               shownWhat(counted) + " that it counts; they were left out"});
 }
 
 }  // namespace
@@ -95,7 +102,7 @@ bool isUnset(std::int64_t count) {
 }
 
 void setToThere(Counted& counted, std::int64_t there, std::vector<Warning>& warnings) {
-    warnings.push_back({"count-unset", "its count of " + std::string(counted.what) + " is " +
+    warnings.push_back({"count-unset", "its count of " + shownWhat(counted) + " is " +
                                            std::to_string(counted.count) + "; the " +
                                            std::to_string(there) + " that follow were read"});
     counted.count = there;

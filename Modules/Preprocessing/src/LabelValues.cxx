@@ -105,7 +105,8 @@ private:
             sum += times * (rank.at(values.second) - rank.at(values.first));
             count += times;
         }
-        return sum / std::max(count, 1.0);
+        // along i alone: slabs that lie across other axes change nowhere
+        return count > 0 ? sum / count : static_cast<double>(tallies_.size());
     }
 
     const TypedVolumeView<T>& view_;
