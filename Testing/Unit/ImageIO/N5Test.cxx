@@ -62,9 +62,10 @@ Text lz4Stream(const Text& text) {
 class N5Test : public ZarrFolder {
 protected:
     static Text metadata(const std::string& compression, const std::string& more = "") {
-        return R"({"dimensions": [7, 6, 5], "blockSize": [4, 4, 4], "dataType": "int16",
+        return withLastOfKeys(
+            R"({"dimensions": [7, 6, 5], "blockSize": [4, 4, 4], "dataType": "int16",
                    "compression": )" +
-               compression + more + "}";
+            compression + more + "}");
     }
     void putBlocks(const std::string& prefix, const Pack& pack) const {
         for (int z = 0; z < kChunksZ; ++z) {

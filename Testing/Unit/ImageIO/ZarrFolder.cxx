@@ -6,11 +6,13 @@
 
 #include <bit>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
 #include "ZarrCodecs.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/ImageIO/ImageRegions.h"
 
 namespace adaptiso::testing {
@@ -80,19 +82,28 @@ void ZarrFolder::put(const std::string& key, const Text& text) const {
     std::ofstream(root_ / key, std::ios::binary) << text;
 }
 
+Text withLastOfKeys(const Text& text) {
+    using Json = nlohmann::json;
+    if (isDeeplyNested(text) || !parseJson<Json>(text).is_discarded()) return text;
+    const Json json = Json::parse(text, nullptr, false);
+    return json.is_discarded() ? text : json.dump();
+}
+
 Text ZarrFolder::metadata2(const std::string& compressor, const std::string& more,
                            const std::string& dtype, const std::string& order) {
-    return R"({"zarr_format": 2, "shape": [5, 6, 7], "chunks": [4, 4, 4], "dtype": ")" + dtype +
-           R"(", "order": ")" + order + R"(", "fill_value": -9, "filters": null, )" +
-           R"("compressor": )" + compressor + more + "}";
+    return withLastOfKeys(
+        R"({"zarr_format": 2, "shape": [5, 6, 7], "chunks": [4, 4, 4], "dtype": ")" + dtype +
+        R"(", "order": ")" + order + R"(", "fill_value": -9, "filters": null, )" +
+        R"("compressor": )" + compressor + more + "}");
 }
 
 Text ZarrFolder::metadata3(const std::string& codecs, const std::string& more) {
-    return R"({"zarr_format": 3, "node_type": "array", "shape": [5, 6, 7],
+    return withLastOfKeys(
+        R"({"zarr_format": 3, "node_type": "array", "shape": [5, 6, 7],
                "data_type": "int16", "fill_value": -9,
                "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [4, 4, 4]}},
                "chunk_key_encoding": {"name": "default"}, "codecs": )" +
-           codecs + more + "}";
+        codecs + more + "}");
 }
 
 void ZarrFolder::putChunks(const std::string& prefix, const std::string& separator,

@@ -36,6 +36,9 @@ Text lz4Of(const Text& text);
 Text withSum(const Text& text);
 Text same(const Text& text);
 
+/// JSON whose keys are there once: of those that `text` has twice, with the last value.
+Text withLastOfKeys(const Text& text);
+
 /// A folder for a hierarchy, gone at the end of the test.
 class ZarrFolder : public ::testing::Test {
 protected:

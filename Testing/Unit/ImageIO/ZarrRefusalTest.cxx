@@ -88,6 +88,13 @@ TEST_F(ZarrRefusalTest, LinksLeadNowhereButIntoTheDatasetAndItsAnnex) {
     fs::remove_all(outside);
 }
 
+TEST_F(ZarrRefusalTest, MetadataWithAKeyTwiceAreRefused) {
+    Text text = metadata2("null");
+    text.insert(1, R"("shape": [1, 1, 1], )");
+    put(".zarray", text);
+    expectRefused("has a key twice");
+}
+
 TEST_F(ZarrRefusalTest, MetadataAsDeepAsAHostileFileLikesAreRefused) {
     for (const std::size_t depth : {std::size_t{50}, std::size_t{200'000}}) {
         const Text deep = Text(depth, '[') + Text(depth, ']');
