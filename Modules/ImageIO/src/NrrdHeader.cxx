@@ -203,7 +203,9 @@ ImageGeometry spacedGeometry(const fs::path& file, const NrrdHeader& header, con
     const auto says = [](const AxisStep& step) { return step.spacing.has_value(); };
     const auto named =
         std::ranges::count_if(steps, [](const AxisStep& step) { return step.unitMm.has_value(); });
-    if (named > 0 && named < 3) {
+    const bool areMm = std::ranges::all_of(
+        steps, [](const AxisStep& step) { return step.unitMm.value_or(1) == 1; });
+    if (named > 0 && named < 3 && !areMm) {
         refuse(file, "some of its axes in space have a unit, others none", "repair the header");
     }
     const double spaceMm = spaceUnitMm(file, header.find("spaceunits").value_or("")).value_or(1);
@@ -237,7 +239,7 @@ void requireNoOtherSteps(const fs::path& file, const NrrdHeader& header, const N
             refuse(file, "its header contradicts itself: units and space units differ",
                    "remove the wrong one");
         }
-        constexpr double kSlack = 1e-3;  // of numbers with few digits
+        constexpr double kSlack = 0.01;  // of numbers with few digits: 0.7 for 0.703125
         const double lengthMm = norm(geometry.indexToPhysical.column[axis]);
         if (step.spacing && !(std::abs(*step.spacing * scale - lengthMm) <= kSlack * lengthMm)) {
             refuse(file,

@@ -88,6 +88,8 @@ TEST(NrrdGeometry, UnitsOfSpacingsBecomeMillimetres) {
     expectNear(read(file).volume.view().geometry().spacingMm(), {2, 3, 4}, 0);
     file.extra = spacings + "units: \"um\" \"\" \"\"\n";
     expectRefusedNrrd(file, "some of its axes in space have a unit, others none");
+    file.extra = spacings + "units: \"mm\" \"\" \"mm\"\n";
+    expectNear(read(file).volume.view().geometry().spacingMm(), {2, 3, 4}, 0);
     file.extra = spacings + "units: \"um\" \"um\"\n";
     expectRefusedNrrd(file, "2 units for 3 axes");
     file.extra = spacings + "units: \"um\" \"um\" \"a b\"\n";
@@ -103,6 +105,8 @@ TEST(NrrdGeometry, SpacingsThatContradictTheDirectionsAreRefused) {
     file.extra = "spacings: 2 3 4\n";
     expectNear(read(file).volume.view().geometry().spacingMm(), {2, 3, 4}, 0);
     file.extra = "spacings: nan nan NaN\n";
+    expectNear(read(file).volume.view().geometry().spacingMm(), {2, 3, 4}, 0);
+    file.extra = "spacings: 1.99 3 4\n";
     expectNear(read(file).volume.view().geometry().spacingMm(), {2, 3, 4}, 0);
     file.extra = "spacings: 2 3 5\n";
     expectRefusedNrrd(file, "spacing of axis 2 is 5, and its space direction is 4 long");
