@@ -287,9 +287,9 @@ void warnOfSurfaces(MeshRun& run) {
         auto noise =
             noiseWarning(surface, run.options.extraction(), meshedGeometry(run), "--max-error ");
         if (noise) noise->file = surface.file.filename().string();
-        for (const auto& warning : {countWarning(surface, run.options), digitsWarning(surface, run),
-                                    insideOutWarning(surface), noise,
-                                    sizeWarning(surface, run.options)}) {
+        for (const auto& warning :
+             {countWarning(surface, run.options), digitsWarning(surface, run),
+              insideOutWarning(surface), noise, sizeWarning(surface, run.options)}) {
             if (warning) run.warnings.push_back(*warning);
         }
     }

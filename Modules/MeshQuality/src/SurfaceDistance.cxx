@@ -407,7 +407,7 @@ std::optional<GapCandidate> nearestByBoxes(const TriangleMesh& a, const AabbTree
         GapCandidate best;
         std::int64_t looks = 0;
         const std::int64_t begin = piece * kGapGrain,
-                           end = std::min(begin + kGapGrain, std::ssize(triangles));
+                           end = std::min<std::int64_t>(begin + kGapGrain, std::ssize(triangles));
         const auto slackReach = [&] {
             return looks > kMost ? -1 : kSlack * std::min(reach, best.squared);
         };

@@ -183,7 +183,7 @@ void TriangleGroups::order(const TriangleView& of, std::vector<Item>& items, con
         return;
     }
     const Subtree left = group.left(), right = group.right();
-    const Vec3 direction = splitDirection(of, {begin, end});
+    const Vec3 direction = splitDirection(of, {&*begin, static_cast<std::size_t>(end - begin)});
     for (auto item = begin; item != end; ++item) {
         item->key = dot(direction, centreOf(of.cornersOf(item->triangle)));
     }
@@ -494,7 +494,7 @@ TriangleGroups::Pairs TriangleGroups::findPairs(
     const TriangleGroups& other, double reachMm,
     const std::function<bool(std::uint32_t, std::uint32_t)>& meets) const {
     if (order_.empty() || other.order_.empty()) return {};
-    const auto triangles = std::max(std::ssize(order_), std::ssize(other.order_));
+    const std::int64_t triangles = std::max(std::ssize(order_), std::ssize(other.order_));
     return Search{*this,
                   other,
                   reachMm,

@@ -118,7 +118,8 @@ private:
     }
     std::int64_t begin(const Subtree& group) const { return group.firstLeaf * kLeafTriangles; }
     std::int64_t end(const Subtree& group) const {
-        return std::min((group.firstLeaf + group.leaves) * kLeafTriangles, std::ssize(order_));
+        return std::min<std::int64_t>((group.firstLeaf + group.leaves) * kLeafTriangles,
+                                      std::ssize(order_));
     }
     std::span<const Vec3> pointsOf(const Subtree& group) const;
 

@@ -37,7 +37,7 @@ struct SimplifyStatistics {
     std::int64_t degenerateTriangles = 0;
     std::int64_t duplicateTriangles = 0;  ///< of the input, with the corners of another, the same
                                           ///< way round: dropped
-    std::int64_t borderEdges = 0;  ///< of the input: with one triangle
+    std::int64_t borderEdges = 0;         ///< of the input: with one triangle
     /// Vertices of the input at edges with three triangles or more, or with two that face opposite
     /// sides, and those that join triangles by themselves alone: kept as they are.
     std::vector<std::int64_t> nonManifoldVertices;
