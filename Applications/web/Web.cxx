@@ -165,7 +165,7 @@ std::vector<std::int32_t> labelsOf(const VolumeView& volume) {
     constexpr std::size_t kMost = 4095;  // colours in a row of a texture
     std::vector<std::int32_t> found;
     try {
-        const labels::LabelCensus census = labels::countLabels(volume);
+        const labels::LabelCensus census = labels::countLabels(volume, {});
         if (census.voxels.size() > kMost) return {};
         for (const auto& [label, voxels] : census.voxels) found.push_back(label);
     } catch (const InvalidInput&) {
