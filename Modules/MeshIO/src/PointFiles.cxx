@@ -45,6 +45,12 @@ PointKind kindOf(std::string_view name) {
                           : PointKind::Electrode;
 }
 
+void requireFinite(std::string_view name, const Vec3& point) {
+    if (!std::isfinite(squaredNorm(point))) {
+        damaged("the place of " + printable(name) + " is not finite");
+    }
+}
+
 /// A point without a place (NaN) is one of file.placeless.
 void add(PointFile& file, std::string_view name, const Vec3& point, PointKind kind) {
     if (file.points.size() + file.placeless.size() == kMostPoints) {
@@ -61,9 +67,7 @@ void add(PointFile& file, std::string_view name, const Vec3& point, PointKind ki
         file.placeless.push_back(withoutControls(name));
         return;
     }
-    if (!std::isfinite(squaredNorm(point))) {
-        damaged("the place of " + printable(name) + " is not finite");
-    }
+    requireFinite(name, point);
     file.points.push_back({withoutControls(name), kind, point});
 }
 
@@ -101,7 +105,10 @@ double unitMm(std::string_view word) {
 
 void scale(PointFile& file, double mm) {
     file.saysUnit = true;
-    for (NamedPoint& point : file.points) point.point = mm * point.point;
+    for (NamedPoint& point : file.points) {
+        point.point = mm * point.point;
+        requireFinite(point.name, point.point);
+    }
 }
 
 /// Frames that BIDS names; most others follow from landmarks.
@@ -248,10 +255,10 @@ Vec3 placeOf(ByteSource& words, std::string_view name, std::int64_t line) {
 }
 
 /// The number of "NumberPositions= 3"; empty where none stands.
-std::optional<std::int64_t> countOf(std::string_view line) {
+std::optional<std::int64_t> countOf(std::string_view line, std::string_view key) {
     const std::size_t digits = line.find_first_of("0123456789+-");
     if (digits == line.npos) return std::nullopt;
-    return toInteger(line.substr(digits), line.substr(0, line.find_first_of("=: \t")));
+    return toInteger(line.substr(digits), key);
 }
 
 void requireCount(std::optional<std::int64_t> count, std::size_t there, const char* what) {
@@ -299,9 +306,9 @@ PointFile decodeElc(std::string_view bytes) {
         } else if (first == "HeadShapePoints") {
             part = Shape;
         } else if (first.starts_with("NumberPositions")) {
-            positionCount = countOf(line);
+            positionCount = countOf(line, "NumberPositions");
         } else if (first.starts_with("NumberHeadShapePoints")) {
-            shapeCount = countOf(line);
+            shapeCount = countOf(line, "NumberHeadShapePoints");
             part = Header;
         } else if (first == "Positions2D" || first == "Polygons" ||
                    first.starts_with("NumberPolygons")) {

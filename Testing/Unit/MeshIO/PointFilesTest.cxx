@@ -193,6 +193,12 @@ TEST(PointFiles, HoldAsManyPositionsAsTheyCount) {
     EXPECT_NE(refused(elc("= 2", "3"), ".elc").find("3 head shape points and holds 2"),
               std::string::npos);
     EXPECT_NE(refused(elc("= 2x"), ".elc").find("NumberPositions"), std::string::npos);
+    EXPECT_EQ(refused(elc("\001w= 2x"), ".elc").find('\001'), std::string::npos);
+}
+
+TEST(PointFiles, AreFiniteInMillimetres) {
+    EXPECT_NE(refused("UnitPosition m\nPositions\nCz : 0 0 9e153\n", ".elc").find("not finite"),
+              std::string::npos);
 }
 
 TEST(PointFiles, HaveThreeCoordinatesEach) {
