@@ -184,6 +184,7 @@ void ByteSource::lookBehindStream(ByteTail& tail) {
     if (rest.size() <= kMostPadding && areZeros(rest)) return;
     tail.hasSecondStream = beginsStream(rest);
     tail.hasStray = !tail.hasSecondStream;
+    if (tail.hasStray) tail.stray = std::move(rest);
 }
 
 std::size_t ByteSource::readRaw(void* out, std::size_t byteCount) {

@@ -18,6 +18,7 @@ struct ByteTail {
     std::string head;              ///< the first of them, at most 1 MiB
     bool hasSecondStream = false;  ///< behind compressed data: zlib or gzip data begin again
     bool hasStray = false;         ///< or something else that is no padding
+    std::string stray;             ///< the first bytes of that, at most 64 KiB
 };
 
 /// The bytes of a file from an offset on, as they are or inflated. Every read that can't be

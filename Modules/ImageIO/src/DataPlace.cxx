@@ -23,15 +23,31 @@ namespace {
 constexpr const char* kRemedy =
     "correct the header's size, type or number of volumes, or cut the file to one image";
 
-/// "2 more images of that size", "3 more slices", "more than half as much again"
+/// "2 more images of that size", "1 more slice, or row of each slice", "half as much again or more"
 std::string amountOf(std::uint64_t extra, const ImageExtent& extent) {
-    const auto times = [&](std::uint64_t unit, const char* name) {
-        const std::uint64_t count = extra / unit;
-        return fmt::format("{} more {}{}", count, name, count > 1 ? "s" : "");
+    const std::uint64_t images = extra / extent.whole;
+    if (extra % extent.whole == 0) {
+        return fmt::format("{} more image{} of that size", images, images > 1 ? "s" : "");
+    }
+    struct Unit {
+        std::uint64_t bytes;
+        const char *one, *many;
     };
-    if (extra % extent.whole == 0) return times(extent.whole, "image") + " of that size";
-    if (extra % extent.piece == 0) return times(extent.piece, "slice");
-    return "half as much again or more";
+    std::string text;
+    std::uint64_t fewest = extra;  // of a cube, slices and rows are alike
+    for (const Unit& unit : {Unit{extent.piece, "slice", "slices"},
+                             {extent.row, "row of each slice", "rows of each slice"},
+                             {extent.column, "column of each slice", "columns of each slice"}}) {
+        const std::uint64_t count = extra / unit.bytes;
+        if (extra % unit.bytes != 0 || count > fewest) continue;
+        const char* const name = count > 1 ? unit.many : unit.one;
+        text = count < fewest || text.empty() ? fmt::format("{} more {}", count, name)
+                                              : text + ", or " + name;
+        fewest = count;
+    }
+    if (!text.empty()) return text;
+    return extra >= extent.whole / 2 ? "half as much again or more"
+                                     : "more than a slice, row or column too few leaves over";
 }
 
 void checkBytesBefore(const fs::path& file, std::uint64_t byteCount, const ImageExtent& extent) {
@@ -41,6 +57,31 @@ void checkBytesBefore(const fs::path& file, std::uint64_t byteCount, const Image
                        "file's end: as much as another image",
                        byteCount),
            kRemedy);
+}
+
+/// The kind of image file that begins so: "a NIfTI file"; empty for others.
+std::string_view imageKindOf(std::string_view head) {
+    if (niftiSamplesAt(head)) return "a NIfTI file";
+    if (mghSamplesAt(head)) return "an MGH file";
+    if (looksLikeNrrd(head)) return "a NRRD file";
+    if (looksLikeMetaImage(head)) return "a MetaImage file";
+    if (looksLikeDicom(head)) return "a DICOM file";
+    return head.starts_with("\x1f\x8b\x08") ? "a gzip file" : "";
+}
+
+/// \param behind  what follows the samples, perhaps behind padding with zeros
+void refuseJoined(const DataPlace& place, std::string_view behind) {
+    constexpr std::size_t kZeros = 3;  // that a big-endian header may begin with
+    const std::size_t first = std::min(behind.find_first_not_of('\0'), behind.size());
+    std::string_view kind = imageKindOf(behind);
+    for (std::size_t zeros = 0; kind.empty() && zeros <= std::min(first, kZeros); ++zeros) {
+        kind = imageKindOf(behind.substr(first - zeros));
+    }
+    if (kind.empty()) return;
+    refuse(
+        place.file,
+        fmt::format("holds {} behind the image that its header describes: two files joined?", kind),
+        "split them, and give one");
 }
 
 using Reopen = std::function<ByteSource()>;
@@ -193,11 +234,22 @@ std::uint64_t bytesOfAll(const DataPlace& place, const SampleLayout& layout, con
 ImageExtent ImageExtent::of(const SampleLayout& layout, const Index3& size) {
     const std::uint64_t slice =
         static_cast<std::uint64_t>(size[0] * size[1]) * bytesPerPixel(layout.stored);
-    return {slice, slice * static_cast<std::uint64_t>(size[2])};
+    const auto slices = static_cast<std::uint64_t>(size[2] * layout.volumeCount);
+    return {slice, slice * static_cast<std::uint64_t>(size[2]),
+            slices * slice / static_cast<std::uint64_t>(size[1]),
+            slices * slice / static_cast<std::uint64_t>(size[0])};
 }
 
 bool isMoreImage(std::uint64_t extraBytes, const ImageExtent& extent) {
-    return isMoreData(extraBytes, extent.piece, extent.whole);
+    return isMoreData(extraBytes, extent.piece, extent.whole) ||
+           extraBytes >= std::min({extent.piece, extent.row, extent.column});
+}
+
+bool isMoreBorder(std::uint64_t zeroBytes, std::uint64_t end, const ImageExtent& extent) {
+    constexpr std::uint64_t kBlock = 512;
+    if (zeroBytes == 0 || zeroBytes >= extent.whole / 2) return false;
+    if (zeroBytes < kBlock && end % kBlock == 0) return false;
+    return zeroBytes % extent.row == 0 || zeroBytes % extent.column == 0;
 }
 
 ByteSource openData(const DataPlace& place, std::uint64_t byteCount, const ImageExtent& extent) {
@@ -292,6 +344,12 @@ void checkTail(const DataPlace& place, const ByteTail& tail, const SampleLayout&
         refuse(place.file, "holds more compressed data behind the image that its header describes",
                kRemedy);
     }
+    const ImageExtent extent = ImageExtent::of(layout, size);
+    const bool isChosenPart = !place.skipName.empty() && place.bytes >= extent.piece;
+    if (!isChosenPart) {
+        refuseJoined(place, tail.head);
+        refuseJoined(place, tail.stray);
+    }
     if (tail.hasStray) {
         warnings.push_back({"trailing-bytes",
                             "something that is no compressed data follows the compressed image; "
@@ -300,23 +358,25 @@ void checkTail(const DataPlace& place, const ByteTail& tail, const SampleLayout&
     if (tail.byteCount == 0) return;
     refuseForeignData(place);
     requireBinaryTransfer(place, layout, size);
-    const ImageExtent extent = ImageExtent::of(layout, size);
-    const bool isMore = !tail.isZeros && isMoreImage(tail.byteCount, extent);
-    const bool isChosenPart = !place.skipName.empty() && place.bytes >= extent.piece;
+    const std::uint64_t end =
+        place.begin + place.bytes + bytesOfAll(place, layout, size) + tail.byteCount;
+    const bool isMore = tail.isZeros ? isMoreBorder(tail.byteCount, end, extent)
+                                     : isMoreImage(tail.byteCount, extent);
+    const bool mayBeHeader = place.isDetached() && place.bytes == 0 && !tail.isZeros;
+    const std::string hint = mayBeHeader
+                                 ? fmt::format("; if they are a header before it, set {} to {}",
+                                               place.skipName, tail.byteCount)
+                                 : "";
     if (isMore && !isChosenPart) {
         refuse(place.file,
                fmt::format("holds {} bytes behind the image that its header describes: {}",
                            tail.byteCount, amountOf(tail.byteCount, extent)),
-               kRemedy);
+               kRemedy + hint);
     }
-    const bool mayBeHeader = place.isDetached() && place.bytes == 0 && !tail.isZeros;
     warnings.push_back(
         {"trailing-bytes",
          fmt::format("{} bytes{} follow the image that its header describes; they were left out{}",
-                     tail.byteCount, tail.isZeros ? ", all 0," : "",
-                     mayBeHeader ? fmt::format("; if they are a header before it, set {} to {}",
-                                               place.skipName, tail.byteCount)
-                                 : "")});
+                     tail.byteCount, tail.isZeros ? ", all 0," : "", hint)});
 }
 
 namespace {

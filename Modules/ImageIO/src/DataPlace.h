@@ -31,15 +31,23 @@ void requireOwnFolder(const std::filesystem::path& headerFile,
 
 /// Bytes of an image as its header has it.
 struct ImageExtent {
-    std::uint64_t piece = 0;  ///< a slice or a row: wrong sizes are off by a multiple of it
-    std::uint64_t whole = 0;  ///< one volume, one image
+    std::uint64_t piece = 0;   ///< a slice
+    std::uint64_t whole = 0;   ///< one volume, one image
+    std::uint64_t row = 0;     ///< a row of every slice of all volumes: one more in a larger image
+    std::uint64_t column = 0;  ///< a column of every slice
 
     /// Slices and volumes of `layout`.
     static ImageExtent of(const SampleLayout& layout, const Index3& size);
 };
 
-/// isMoreData() of slices: the file holds more of the image than its header describes.
+/// The file holds more of the image than its header describes: as much as a header that is one
+/// slice, row or column short leaves over.
 bool isMoreImage(std::uint64_t extraBytes, const ImageExtent& extent);
+
+/// The same of bytes that are all 0, which are padding elsewhere: whole rows or columns of every
+/// slice, as of a larger image's border, that no block of 512 bytes explains.
+/// \param end  of the file or of the stream, behind those bytes
+bool isMoreBorder(std::uint64_t zeroBytes, std::uint64_t end, const ImageExtent& extent);
 
 /// A header's word of where its samples lie.
 struct DataPlace {
@@ -79,8 +87,8 @@ PlacedVolume readPlaced(const DataPlace& place, const SampleLayout& layout,
 ///
 /// A warning is added for anything but padding with zeros behind compressed data.
 /// \throws FileError  the data file is of another kind (a picture, an archive); the samples were
-///                    changed by a transfer in text mode; another image or more of this one
-///                    follows, unless the header points into a larger file
+///                    changed by a transfer in text mode; another image, whatever its size, or more
+///                    of this one follows, unless the header points into a larger file
 void checkTail(const DataPlace& place, const ByteTail& tail, const SampleLayout& layout,
                const Index3& size, std::vector<Warning>& warnings);
 

@@ -209,11 +209,17 @@ void DicomFrames::openNative() {
             "convert it with segimage2itkimage (dcmqi)");
     }
     const auto columns = static_cast<std::uint64_t>(format_.columns);
-    if (!isMoreImage(extra,
-                     {format_.nativeBytes(columns), format_.nativeBytes(format_.framePixels())}) ||
-        isZeros(dicom_.header.pixelData->offset + needed, extra)) {
-        return;
-    }
+    const auto rows = static_cast<std::uint64_t>(format_.rows);
+    const auto frames = static_cast<std::uint64_t>(format_.frames);
+    const std::uint64_t frame = format_.nativeBytes(format_.framePixels());
+    const ImageExtent extent{frame, frame, format_.nativeBytes(columns * frames),
+                             format_.nativeBytes(rows * frames)};
+    constexpr std::uint64_t kUnaligned = 1;  // a data element ends at no block's end
+    const bool isMore =
+        isZeros(dicom_.header.pixelData->offset + needed, extra)
+            ? isMoreBorder(extra, kUnaligned, extent)
+            : isMoreData(extra, format_.nativeBytes(columns), frame) || isMoreImage(extra, extent);
+    if (!isMore) return;
     refuse(
         dicom_.path,
         fmt::format("its pixel data hold {} bytes, its header describes {} ({} x {} pixels of {} "

@@ -61,6 +61,16 @@ ImageGeometry geometryOf(const HeaderBytes& bytes, const Index3& size,
     return {size, toLps * (centre - ras * half), toLps * ras};
 }
 
+/// Behind a footer of unknown length a second file begins anywhere.
+void requireNoSecondImage(const fs::path& file, std::string_view tail) {
+    for (; tail.size() >= kHeaderBytes; tail.remove_prefix(1)) {
+        if (!mghSamplesAt(tail)) continue;
+        refuse(file,
+               "holds an MGH file behind the image that its header describes: two files joined?",
+               "split them, and give one");
+    }
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> mghSamplesAt(std::string_view head) {
@@ -108,7 +118,12 @@ ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     const ImageExtent extent = ImageExtent::of(layout, size);
     const MghFooter footer = mghFooterOf(read.tail.head, read.tail.byteCount);
     const bool mayBeImage = footer != MghFooter::Whole && isMoreImage(read.tail.byteCount, extent);
+    if (footer != MghFooter::Whole) requireNoSecondImage(file, read.tail.head);
     if (footer == MghFooter::None || mayBeImage) {
+        constexpr std::uint64_t kNumbers = 20;  // of a footer, 0 as the border before them
+        const bool isBorder = read.tail.isZeros && read.tail.byteCount > kNumbers &&
+                              isMoreBorder(read.tail.byteCount - kNumbers, kHeaderBytes, extent);
+        if (isBorder) read.tail.byteCount -= kNumbers;
         checkTail(place, read.tail, layout, size, warnings);
     } else if (read.tail.byteCount > 0 && place.encoding == ByteSource::Encoding::Raw) {
         requireBinaryTransfer(place, layout, size);

@@ -548,8 +548,12 @@ Volume readNrrdText(const fs::path& file, ByteSource& source, PixelType type,
     std::uint64_t more = 0;
     const auto enough = static_cast<std::uint64_t>(count) + 1;
     while (more < enough && !stream.next().empty()) ++more;
-    const auto slice = static_cast<std::uint64_t>(geometry.size[0] * geometry.size[1]);
-    if (isMoreImage(more, {slice, static_cast<std::uint64_t>(count)})) {
+    const auto samplesOf = [&](std::size_t a, std::size_t b) {
+        return static_cast<std::uint64_t>(geometry.size[a] * geometry.size[b]);
+    };
+    const ImageExtent extent{samplesOf(0, 1), static_cast<std::uint64_t>(count), samplesOf(0, 2),
+                             samplesOf(1, 2)};
+    if (isMoreImage(more, extent)) {
         refuse(file,
                fmt::format("its data hold {}{} numbers, its header describes {}",
                            more == enough ? "at least " : "",

@@ -125,6 +125,57 @@ TEST(MoreThanTheHeaderSays, MoreSlicesAreRefusedInEveryFormat) {
     }
 }
 
+TEST(MoreThanTheHeaderSays, ARowOrColumnTooFewIsRefusedInEveryFormat) {
+    const TempFolder folder;
+    constexpr std::size_t kRowBytes = 2 * kColumns * kSlices, kColumnBytes = 2 * kRows * kSlices;
+    const std::string both(2 * (kColumns + kRows + 1) * kSlices, '\7');
+    for (const Format& format : formats()) {
+        const auto refused = [&](const std::string& more, std::string_view fault) {
+            expectRefusal(writeFile(folder / format.name, format.file(more)), fault);
+        };
+        refused(std::string(kRowBytes, '\7'), "1 more row of each slice");
+        refused(std::string(kColumnBytes, '\7'), "1 more column of each slice");
+        refused(std::string(3 * kColumnBytes, '\7'), "3 more columns of each slice");
+        refused(both, "more than a slice, row or column too few leaves over");
+    }
+}
+
+TEST(MoreThanTheHeaderSays, ABorderOfZerosIsMoreOfTheImageWhereItIsWholeRowsOrColumns) {
+    const TempFolder folder;
+    constexpr std::size_t kRowBytes = 2 * kColumns * kSlices, kColumnBytes = 2 * kRows * kSlices;
+    for (const Format& format : formats()) {
+        const bool isMgh = std::string_view(format.name).find(".mg") != std::string_view::npos;
+        for (const std::size_t bytes : {kRowBytes, kColumnBytes}) {
+            const std::string zeros(bytes + (isMgh ? 20 : 0), '\0');  // and a footer of zeros
+            expectRefusal(writeFile(folder / format.name, format.file(zeros)),
+                          bytes == kRowBytes ? "1 more row" : "1 more column");
+        }
+        if (isMgh) continue;
+        expectRead(writeFile(folder / format.name, format.file(std::string(kRowBytes - 2, '\0'))),
+                   "126 bytes, all 0, follow");
+    }
+    // to a whole block of 512 bytes, as tapes and caches are written
+    const std::string offset =
+        niftiHeader([](NiftiFile& f) { f.dataOffset = 384; }) + std::string(32, '\0');
+    expectRead(writeFile(folder / "x.nii", offset + data() + std::string(128, '\0')),
+               "128 bytes, all 0, follow");
+}
+
+TEST(MoreThanTheHeaderSays, NumbersInTextAreHeldAgainstItToo) {
+    const TempFolder folder;
+    std::string text;
+    for (const std::int16_t value : samples()) text += std::to_string(value) + " ";
+    const std::string header = nrrdHeader("encoding: text\n");
+    const auto with = [&](int count) {
+        std::string more;
+        for (int n = 0; n < count; ++n) more += "7 ";
+        return writeFile(folder / "x.nrrd", header + text + more);
+    };
+    expectRead(with(kRows * kSlices - 1), "31 words follow");
+    expectRefusal(with(kRows * kSlices), "its data hold 544 numbers, its header describes 512");
+    expectRefusal(with(kColumns * kSlices + 1), "its data hold 577 numbers");
+}
+
 TEST(MoreThanTheHeaderSays, AFewBytesOrPaddingAreReadWithAWarning) {
     const TempFolder folder;
     for (const Format& format : formats()) {
@@ -157,6 +208,33 @@ TEST(MoreThanTheHeaderSays, TwoFilesJoinedIntoOneAreRefused) {
     expectRefusal(writeFile(folder / "x.mha", metaHeader("CompressedData = True\n") +
                                                   zlibbed(data()) + zlibbed(data())),
                   "more compressed data");
+}
+
+TEST(MoreThanTheHeaderSays, ASmallerFileJoinedBehindIsRefused) {
+    const TempFolder folder;
+    const std::string little =
+        niftiHeader([](NiftiFile& f) { f.dim = {3, 2, 2, 2, 1, 1, 1, 1}; }) + std::string(16, '\1');
+    std::string mgh = mghHeader();
+    for (const std::size_t at : {4U, 8U, 12U}) put(mgh, at, 2, std::endian::big);
+    mgh += std::string(16, '\1');
+    const std::string gap(48, '\0');
+    for (const Format& format : formats()) {
+        const auto refused = [&](const std::string& more, std::string_view kind) {
+            expectRefusal(writeFile(folder / format.name, format.file(more)), kind);
+            expectRefusal(folder / format.name, kBehind);
+        };
+        const bool isMgh = std::string_view(format.name).find(".mg") != std::string_view::npos;
+        refused(mgh, "holds an MGH file");
+        refused(gap + mgh, "holds an MGH file");
+        if (isMgh) refused(std::string(20, '\x41') + mgh, "holds an MGH file");
+        refused(little, isMgh ? "" : "holds a NIfTI file");
+        refused(gap + little, isMgh ? "" : "holds a NIfTI file");
+    }
+    const std::string nifti = niftiHeader() + data();
+    expectRefusal(writeFile(folder / "x.nii.gz", gzipped(nifti) + gzipped(little)),
+                  "holds a NIfTI file");
+    expectRefusal(writeFile(folder / "x.nii.gz", gzipped(nifti) + little), "holds a NIfTI file");
+    expectRefusal(writeFile(folder / "x.nii", nifti + gzipped(little)), "holds a gzip file");
 }
 
 TEST(MoreThanTheHeaderSays, WhatFollowsCompressedDataIsWarnedOfUnlessItIsZeros) {
@@ -384,11 +462,18 @@ TEST(OtherKindsOfData, AreNoneWhereTheLengthIsRight) {
 
 TEST(OtherKindsOfData, WhatFollowsADataFileMayBeAHeaderBeforeIt) {
     const TempFolder folder;
-    writeFile(folder / "x.raw", std::string(100, 'h') + data());
-    const auto header = writeFile(folder / "x.nhdr", detachedHeaders()[0].text(0));
-    EXPECT_TRUE(
-        mentions(readVolume(header), "if they are a header before it, set byte skip to 100"));
-    expectRead(writeFile(header, detachedHeaders()[0].text(100)));
+    for (const int bytes : {60, 100}) {
+        writeFile(folder / "x.raw", std::string(static_cast<std::size_t>(bytes), 'h') + data());
+        const auto header = writeFile(folder / "x.nhdr", detachedHeaders()[0].text(0));
+        const std::string hint =
+            "if they are a header before it, set byte skip to " + std::to_string(bytes);
+        if (bytes == 60) {
+            EXPECT_TRUE(mentions(readVolume(header), hint));
+        } else {  // as many as a column of each slice has, and more
+            EXPECT_NE(refusalOf(header).find(hint), std::string::npos) << refusalOf(header);
+        }
+        expectRead(writeFile(header, detachedHeaders()[0].text(bytes)));
+    }
 }
 
 /// A CR before every LF, as FTP's text mode does to Windows.
@@ -491,6 +576,23 @@ std::string mghTag(std::int32_t tag, const std::string& content) {
            bytesOf(static_cast<std::int64_t>(content.size()), std::endian::big) + content;
 }
 
+/// Tag 1 tells of no length. Version 1 lists names and colours, version 2 labels too.
+std::string colorTable(int version) {
+    const auto number = [](std::int32_t value) { return bytesOf(value, std::endian::big); };
+    const auto text = [&](const std::string& word) {
+        return number(static_cast<std::int32_t>(word.size()) + 1) + word + std::string(1, '\0');
+    };
+    std::string table = number(1);
+    table += version == 2 ? number(-2) + number(1000) : number(2);
+    table += text("/opt/FreeSurferColorLUT.txt");
+    if (version == 2) table += number(2);
+    for (const std::int32_t label : {10, 17}) {
+        if (version == 2) table += number(label);
+        table += text("Left-Thalamus") + number(0) + number(118) + number(14) + number(0);
+    }
+    return table;
+}
+
 TEST(MghFooter, IsNoImage) {
     const TempFolder folder;
     const std::string image = mghHeader() + data(std::endian::big);
@@ -506,12 +608,30 @@ TEST(MghFooter, IsNoImage) {
     }
     const std::string end = bytesOf(-1, std::endian::big);
     expectRead(writeFile(folder / "x.mgh", image + numbers + mghTag(31, xform) + end));
-    // a colour table (tag 1) tells of no length
-    expectRead(writeFile(folder / "x.mgh",
-                         image + numbers + bytesOf(1, std::endian::big) + std::string(200, 'l')));
+    for (const std::string& table : {colorTable(1), colorTable(2)}) {
+        expectRead(writeFile(folder / "x.mgh", image + numbers + table));
+        expectRead(writeFile(folder / "x.mgh", image + numbers + table + mghTag(3, commands)));
+        const std::string more = numbers + table + std::string(kSliceBytes, '\0') + "\1";
+        expectRefusal(writeFile(folder / "x.mgh", image + more), kBehind);
+    }
     for (const std::string& footer : {numbers.substr(0, 7), numbers + mghTag(3, "cut").substr(0, 9),
-                                      numbers + mghTag(3, commands).substr(0, 100)}) {
+                                      numbers + mghTag(3, commands).substr(0, 40)}) {
         expectRead(writeFile(folder / "x.mgh", image + footer), "MGH footer) are cut off");
+    }
+}
+
+TEST(MghFooter, HidesNoSliceThatTheHeaderLeavesOut) {
+    const TempFolder folder;
+    const std::string image = mghHeader() + data(std::endian::big);
+    const std::string footer = std::string(20, '\x41') + mghTag(3, "mri_convert");
+    for (const auto value : {std::int16_t{0}, std::int16_t{1}, std::int16_t{2}, std::int16_t{20}}) {
+        const std::vector<std::int16_t> slice(kColumns * kRows, value);
+        const std::string more = samplesOf(slice, std::endian::big);
+        for (const std::size_t bytes : {kSliceBytes, kSliceBytes / 2, kSliceBytes / 4}) {
+            const std::string part = more.substr(0, bytes) + footer;
+            expectRefusal(writeFile(folder / "x.mgh", image + part), kBehind);
+            expectRefusal(writeFile(folder / "x.mgz", gzipped(image + part)), kBehind);
+        }
     }
 }
 

@@ -97,6 +97,20 @@ TEST(DicomMorePixels, PaddingIsNone) {
     EXPECT_EQ(inflated.size(), 1U);
 }
 
+TEST(DicomMorePixels, AColumnTooFewIsRefused) {
+    const std::size_t column = 2 * kRows, row = 2 * kColumns;
+    for (const std::size_t bytes : {column, row, row + column + 2}) {
+        expectFault("its pixel data hold", [&](DicomBuilder& image, int k) {
+            append(image, k, std::string(bytes, '\7'));
+        });
+    }
+    for (const std::size_t bytes : {column, row}) {  // a border of zeros
+        expectFault("its pixel data hold", [&](DicomBuilder& image, int k) {
+            append(image, k, std::string(bytes, '\0'));
+        });
+    }
+}
+
 TEST(DicomMorePixels, TheByteThatMakesLengthsEvenIsNone) {
     const TempFolder folder;
     for (int k = 0; k < 2; ++k) {
