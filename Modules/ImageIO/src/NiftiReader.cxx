@@ -464,6 +464,39 @@ std::uint64_t requireDataOffset(const fs::path& file, const NiftiHeader& h) {
     return static_cast<std::uint64_t>(h.dataOffset);
 }
 
+/// An extension must end before the voxels. Where one reaches beyond vox_offset and the file is
+/// longer than its voxels by as much, it would be read as voxels.
+/// \param bytesBehind  what follows the voxels, were they at vox_offset
+void requireVoxelsBehindExtensions(const fs::path& file, const NiftiHeader& h,
+                                   std::uint64_t bytesBehind) {
+    if (!h.hasDataInside || bytesBehind == 0) return;
+    constexpr std::size_t kFlagBytes = 4, kHeadBytes = 8;
+    constexpr std::int32_t kUnit = 16, kMostCode = 1000;  // nifti1.h: sizes are multiples of 16
+    ByteSource source = ByteSource::openPlainOrGzip(file);
+    std::uint64_t end = (h.version == 1 ? kHeader1Bytes : kHeader2Bytes) + kFlagBytes;
+    source.skip(end - kFlagBytes);
+    std::array<char, kHeadBytes> head{};
+    source.read(head.data(), kFlagBytes);
+    const bool isFlagged = head[0] != 0;
+    const auto dataOffset = static_cast<std::uint64_t>(h.dataOffset);
+    while (source.readSome(head.data(), kHeadBytes) == kHeadBytes) {
+        const HeaderBytes bytes({head.data(), kHeadBytes}, h.byteOrder);
+        const auto size = bytes.at<std::int32_t>(0), code = bytes.at<std::int32_t>(4);
+        if (size < kUnit || size % kUnit != 0 || code < 0 || code > kMostCode) return;
+        end += static_cast<std::uint64_t>(size);
+        if (end > dataOffset + bytesBehind) return;
+        const bool fits = end == dataOffset + bytesBehind;
+        if (end > dataOffset && (isFlagged || fits)) {
+            refuse(file,
+                   fmt::format("its header contradicts itself: voxels begin at byte {} "
+                               "(vox_offset), where an extension lies that ends at byte {}",
+                               dataOffset, end),
+                   fits ? fmt::format("set vox_offset to {}", end) : "repair the header");
+        }
+        source.skip(static_cast<std::uint64_t>(size) - kHeadBytes);
+    }
+}
+
 SampleLayout layoutOf(const fs::path& file, const NiftiHeader& h, std::vector<Warning>& warnings) {
     SampleLayout layout{pixelTypeOfCode(file, h), h.byteOrder};
     // slope 0 or NaN means "no scaling": nifti1.h and, for NaN, what nibabel and SPM write
@@ -534,6 +567,7 @@ ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
     place.bytes = requireDataOffset(headerFile, header);
     if (!header.hasDataInside) place.skipName = "vox_offset";
     PlacedVolume read = readPlaced(place, layout, geometry);
+    requireVoxelsBehindExtensions(headerFile, header, read.tail.byteCount);
     checkTail(place, read.tail, layout, extents.size, warnings);
     return {std::move(read.volume), header.version == 1 ? "NIfTI-1" : "NIfTI-2",
             std::move(warnings), layout.scalingText("scl_slope", "scl_inter")};

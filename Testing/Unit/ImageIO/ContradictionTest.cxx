@@ -244,6 +244,41 @@ TEST(MoreThanTheHeaderSays, WhatFollowsCompressedDataIsWarnedOfUnlessItIsZeros) 
     expectRead(writeFile(folder / "x.nii.gz", nifti + "signed by me"), "no compressed data");
 }
 
+std::string niftiExtension(std::int32_t bytes, std::endian order = std::endian::little) {
+    std::string extension(static_cast<std::size_t>(bytes), 'e');
+    put(extension, 0, bytes, order);
+    put<std::int32_t>(extension, 4, 6, order);  // a comment
+    return extension;
+}
+
+TEST(NiftiExtension, ThatReachesBeyondTheVoxelsBeginIsNotReadAsVoxels) {
+    const TempFolder folder;
+    const auto file = [&](int offset, bool isFlagged, const std::string& content) {
+        std::string header =
+            niftiHeader([&](NiftiFile& f) { f.dataOffset = static_cast<float>(offset); });
+        header[348] = isFlagged ? '\1' : '\0';
+        return writeFile(folder / "x.nii", header + content);
+    };
+    const auto refused = [&](const fs::path& nifti, int offset) {
+        expectRefusal(nifti, "voxels begin at byte " + std::to_string(offset));
+        expectRefusal(nifti, "set vox_offset to 432");
+    };
+    const std::string two = niftiExtension(32) + niftiExtension(48);
+    expectRead(file(432, true, two + data()));
+    for (const bool isFlagged : {true, false}) {
+        refused(file(352, isFlagged, niftiExtension(80) + data()), 352);
+        refused(file(384, isFlagged, two + data()), 384);
+        refused(file(400, isFlagged, two + data()), 400);
+    }
+    expectRefusal(file(352, true, niftiExtension(32) + data() + "abc"), "an extension lies");
+    expectRead(file(352, true, data()));  // the flag alone is wrong
+    expectRead(file(352, false, data() + "abc"), "3 bytes follow");
+    expectRead(file(384, true, niftiExtension(1 << 20).substr(0, 32) + data()));
+    expectRefusal(
+        writeFile(folder / "x.nii.gz", gzipped(niftiHeader() + niftiExtension(64) + data())),
+        "set vox_offset to 416");
+}
+
 TEST(MoreThanTheHeaderSays, AllVolumesOfA4DFileCount) {
     const TempFolder folder;
     const std::string header =
