@@ -16,6 +16,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
+#include <set>
 #include <vector>
 
 #include "Bytes.h"
@@ -24,6 +26,7 @@
 #include "GiftiArrays.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/MghFooter.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso::meshio {
 
@@ -48,10 +51,70 @@ PointLabel labelOf(const XmlAttributes& attributes, const std::string& name) {
     if (attributes.find("Red") == attributes.end()) return label;
     label.rgba.emplace();
     for (std::size_t n = 0; n < 4; ++n) {
-        const double part = toReal(attributeOr(attributes, kChannels[n], "1"), "a colour");
-        (*label.rgba)[n] = part >= 0 && part <= 1 ? part : 0;
+        (*label.rgba)[n] = toReal(attributeOr(attributes, kChannels[n], "1"), "a colour");
     }
     return label;
+}
+
+/// Makes parts of 1 of colours that are written as 0 to 255, which holds for a whole table.
+void settleColors(std::vector<PointLabel>& labels, std::vector<Warning>& warnings) {
+    constexpr double kMost = 255;
+    const auto isWithin = [](double value, double most) { return value >= 0 && value <= most; };
+    bool areParts = true, areAlphasParts = true;
+    std::int64_t unread = 0;
+    std::string first;
+    for (PointLabel& label : labels) {
+        if (!label.rgba) continue;
+        const auto& [red, green, blue, alpha] = *label.rgba;
+        for (const double value : *label.rgba) {
+            if (isWithin(value, kMost)) continue;
+            if (unread++ == 0) {
+                first = "that of label " + std::to_string(label.key) + " is " + formatShort(red) +
+                        " " + formatShort(green) + " " + formatShort(blue) + " " +
+                        formatShort(alpha);
+            }
+            label.rgba.reset();
+            break;
+        }
+        if (!label.rgba) continue;
+        areParts = areParts && red <= 1 && green <= 1 && blue <= 1;
+        areAlphasParts = areAlphasParts && alpha <= 1;
+    }
+    for (PointLabel& label : labels) {
+        for (std::size_t n = 0; label.rgba && n < 4; ++n) {
+            if (!(n < 3 ? areParts : areAlphasParts)) (*label.rgba)[n] /= kMost;
+        }
+    }
+    if (unread == 0) return;
+    warnings.push_back(
+        {"colors-not-read", (unread == 1 ? "a colour is left out: "
+                                         : std::to_string(unread) + " colours are left out: ") +
+                                first + ", must be parts of 1, or 0 to 255"});
+}
+
+/// Keeps the first of the labels that have one key.
+void settleKeys(std::vector<PointLabel>& labels, std::vector<Warning>& warnings) {
+    std::map<std::int32_t, std::size_t> places;
+    std::vector<PointLabel> kept;
+    std::set<std::int32_t> repeated;
+    for (PointLabel& label : labels) {
+        const auto [at, isNew] = places.emplace(label.key, kept.size());
+        if (!isNew) {
+            const PointLabel& first = kept[at->second];
+            if (first.name != label.name || first.rgba != label.rgba) repeated.insert(label.key);
+            continue;
+        }
+        kept.push_back(std::move(label));
+    }
+    labels = std::move(kept);
+    if (repeated.empty()) return;
+    const std::string key = std::to_string(*repeated.begin());
+    warnings.push_back(
+        {"label-listed-twice",
+         (repeated.size() == 1 ? "label " + key + " is listed twice"
+                               : std::to_string(repeated.size()) + " labels are listed twice, " +
+                                     key + " among them") +
+             " with different names or colours; the first counts"});
 }
 
 PointValues decodeArray(const GiftiArray& stored, Unpacking& unpacking) {
@@ -130,6 +193,8 @@ PointData decodeGiftiData(std::string_view bytes) {
         data.arrays.push_back(decodeArray(array, unpacking));
     }
     data.warnings = std::move(unpacking.warnings);
+    settleColors(data.labels, data.warnings);
+    settleKeys(data.labels, data.warnings);
     if (data.arrays.empty()) damaged("it holds no values");
     const PointValues& first = data.arrays.front();
     const auto size = [](const auto& values) { return std::ssize(values); };

@@ -196,6 +196,62 @@ TEST(PointData, ForeignGiftiIsRead) {
     EXPECT_EQ(data.labels.at(0).key, 3);
 }
 
+PointData withLabels(const std::string& labels) {
+    return decodePointData(giftiText("DataType=\"NIFTI_TYPE_INT32\" Dim0=\"2\"><Data>1 2",
+                                     "<LabelTable>" + labels + "</LabelTable>"),
+                           PointDataFormat::Gifti, "a.gii");
+}
+
+std::string labelText(int key, const std::string& name, const std::string& rgba) {
+    std::string text = "<Label Key=\"" + std::to_string(key) + "\"";
+    static constexpr const char* kChannels[] = {"Red", "Green", "Blue", "Alpha"};
+    std::size_t at = 0;
+    for (const char* const channel : kChannels) {
+        const std::size_t end = std::min(rgba.find(' ', at), rgba.size());
+        text += " " + std::string(channel) + "=\"" + rgba.substr(at, end - at) + "\"";
+        at = end + 1;
+    }
+    return text + ">" + name + "</Label>";
+}
+
+TEST(PointData, LabelColoursOf0To255AreReadAsSuch) {
+    using Rgba = std::array<double, 4>;
+    const PointData bytes =
+        withLabels(labelText(1, "a", "255 0 51 1") + labelText(2, "b", "1 1 0 1"));
+    EXPECT_EQ(bytes.labels.at(0).rgba, (Rgba{1, 0, 0.2, 1}));
+    EXPECT_EQ(bytes.labels.at(1).rgba, (Rgba{1 / 255., 1 / 255., 0, 1}));
+    EXPECT_EQ(withLabels(labelText(1, "a", "0 0 2 255")).labels.at(0).rgba,
+              (Rgba{0, 0, 2 / 255., 1}));
+    EXPECT_TRUE(bytes.warnings.empty());
+    const PointData parts = withLabels(labelText(1, "a", "1 0 0.5 0.25"));
+    EXPECT_EQ(parts.labels.at(0).rgba, (Rgba{1, 0, 0.5, 0.25}));
+    EXPECT_TRUE(parts.warnings.empty());
+    for (const char* const bad : {"256 0 0 1", "-1 0 0 1", "0 0 0 65535"}) {
+        const PointData odd = withLabels(labelText(1, "a", bad) + labelText(2, "b", "1 0 0 1"));
+        EXPECT_FALSE(odd.labels.at(0).rgba);
+        EXPECT_EQ(odd.labels.at(0).name, "a");
+        EXPECT_EQ(odd.labels.at(1).rgba, (Rgba{1, 0, 0, 1}));
+        ASSERT_EQ(odd.warnings.size(), 1U);
+        EXPECT_EQ(odd.warnings[0].code, "colors-not-read");
+    }
+}
+
+TEST(PointData, OfLabelsThatAreListedTwiceTheFirstCounts) {
+    const std::string first = labelText(1, "a", "1 0 0 1");
+    const PointData twice =
+        withLabels(first + labelText(2, "c", "0 0 1 1") + labelText(1, "b", "1 0 0 1"));
+    ASSERT_EQ(twice.labels.size(), 2U);
+    EXPECT_EQ(twice.labels[0].name, "a");
+    EXPECT_EQ(twice.labels[1].name, "c");
+    ASSERT_EQ(twice.warnings.size(), 1U);
+    EXPECT_EQ(twice.warnings[0].code, "label-listed-twice");
+    EXPECT_NE(twice.warnings[0].text.find("label 1 is listed twice"), std::string::npos);
+    EXPECT_EQ(withLabels(first + labelText(1, "a", "0 1 0 1")).warnings.size(), 1U);
+    const PointData same = withLabels(first + first);
+    EXPECT_EQ(same.labels.size(), 1U);
+    EXPECT_TRUE(same.warnings.empty());
+}
+
 TEST(PointData, WhatIsNotReadIsRefusedInALine) {
     const std::string two = big32(2) + big32(0) + big32(1) + big32(1) + big32(1);
     struct Case {
