@@ -88,13 +88,14 @@ private:
         } else if (section == "polygons") {
             decodePolygons(line);
         } else if (section == "vertices" || section == "lines") {
-            readCells(line);
+            cells_ += static_cast<std::int64_t>(countCells(readCells(line)));
         } else if (section == "triangle_strips") {
             refuseStrips();
         } else if (section == "point_data" || section == "cell_data") {
             tuples_ = line.integerWord("the number of tuples");
             isPointData_ = section == "point_data";
-            if (isPointData_) requireOneEach(tuples_);
+            isCellData_ = !isPointData_;
+            requireOneEach(tuples_);
         } else if (section == "normals") {
             decodeNormals(line);
         } else if (const std::int64_t components = componentsOf(section); components > 0) {
@@ -150,11 +151,27 @@ private:
         }
     }
 
-    /// Refuses values that are not as many as the points.
+    /// Refuses values that are not as many as the points, or the cells.
     void requireOneEach(std::int64_t tuples) const {
-        if (tuples == std::ssize(file_.mesh.points)) return;
-        damaged("it has values for " + std::to_string(tuples) + " points, and " +
-                std::to_string(file_.mesh.points.size()) + " points");
+        const std::int64_t there = isPointData_ ? std::ssize(file_.mesh.points)
+                                                : cells_ + std::ssize(file_.mesh.triangles);
+        if (tuples == there) return;
+        const std::string what = isPointData_ ? " points" : " cells";
+        damaged("it has values for " + std::to_string(tuples) + what + ", and " +
+                std::to_string(there) + what);
+    }
+
+    /// Cells of a list as readCells() has it.
+    static std::size_t countCells(const std::vector<std::int64_t>& cells) {
+        std::size_t count = 0;
+        for (std::size_t at = 0; at < cells.size(); ++count) {
+            if (cells[at] < 0) damaged("a cell has less than 0 corners");
+            if (static_cast<std::size_t>(cells[at]) >= cells.size() - at) {
+                damaged("its list of cells breaks off");
+            }
+            at += 1 + static_cast<std::size_t>(cells[at]);
+        }
+        return count;
     }
 
     /// Refuses a second section of a surface.
@@ -321,7 +338,7 @@ private:
                 const std::string text = takeStrings(tuples, components);
                 if (!marks_.frame()) addField(name, text, fieldMarks_);
             } else {
-                if (isPointData_ && tuples > 0) requireOneEach(tuples);
+                if ((isPointData_ || isCellData_) && tuples > 0) requireOneEach(tuples);
                 decodeArray(name, tuples, components, parseType(type));
             }
         }
@@ -419,6 +436,8 @@ private:
     bool isBinary_ = false;
     bool hasOffsets_ = false;   ///< cells as offsets and connectivity (version 5)
     bool isPointData_ = false;  ///< the attributes at this place are of points
+    bool isCellData_ = false;   ///< or of cells
+    std::int64_t cells_ = 0;    ///< vertices and lines, which are cells too
     std::int64_t tuples_ = 0;   ///< tuples of each attribute array at this place
 };
 

@@ -340,6 +340,14 @@ void decodeTriangles(const VtpHandler& handler, ArrayReader& reader, TriangleMes
     }
 }
 
+/// Arrays of places need not say their components; where they do, these are x, y and z.
+void requireComponents(const DataArray& stored, std::string_view what) {
+    const std::string found = attributeOr(stored.attributes, "NumberOfComponents", "3");
+    if (toInteger(found, "a number of components") == 3) return;
+    malformed("its " + std::string(what) + " have " + printable(found) +
+              " components (NumberOfComponents), must have 3");
+}
+
 /// \return  nothing for an array of more components than a tensor has
 std::optional<PointArray> decodePointArray(const DataArray& stored, std::int64_t points,
                                            ArrayReader& reader) {
@@ -509,12 +517,14 @@ MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
     MeshFile file;
     const std::int64_t points = pieceCount(handler, "NumberOfPoints");
     requireRoom("points", points, 1, 1032 * bytes.size());  // so that 3 * points can't overflow
+    requireComponents(handler.points, "points");
     const auto coordinates = reader.numbers<double>(handler.points, 3 * points, "points");
     for (std::int64_t i = 0; i < points; ++i) {
         file.mesh.points.push_back(
             {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]});
     }
     if (!handler.normals.attributes.empty()) {
+        requireComponents(handler.normals, "normals");
         const auto normals = reader.numbers<double>(handler.normals, 3 * points, "normals");
         for (std::int64_t i = 0; i < points; ++i) {
             file.mesh.normals.push_back(

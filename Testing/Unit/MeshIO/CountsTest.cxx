@@ -247,6 +247,51 @@ TEST(Counts, OfVtkAreThoseOfItsPoints) {
     EXPECT_NE(fault(vtk + polygon, "a.vtk").find("two sections POLYGONS"), std::string::npos);
 }
 
+TEST(Counts, OfVtkCellDataAreThoseOfItsCells) {
+    const std::string head =
+                          "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 3 "
+                          "float\n0 0 0 1 0 0 0 1 0\n",
+                      polygon = "POLYGONS 1 4\n3 0 1 2\n",
+                      others = "VERTICES 2 4\n1 0 1 1\nLINES 1 3\n2 0 1\n";
+    const auto scalars = [](int count) {
+        std::string text = "SCALARS s float\nLOOKUP_TABLE default\n";
+        for (int n = 0; n < count; ++n) text += "1 ";
+        return "CELL_DATA " + std::to_string(count) + "\n" + text + "\n";
+    };
+    const auto field = [](int count, int tuples) {
+        std::string text = "CELL_DATA " + std::to_string(count) + "\nFIELD f 1\na 1 " +
+                           std::to_string(tuples) + " float\n";
+        for (int n = 0; n < tuples; ++n) text += "1 ";
+        return text + "\n";
+    };
+    const std::string one = head + polygon, four = head + others + polygon;
+    for (const std::string& good : {one + scalars(1), one + field(1, 1), four + scalars(4),
+                                    four + field(4, 4), one + "POINT_DATA 3\n" + scalars(1)}) {
+        EXPECT_EQ(codesOf(decoded(good, "a.vtk")), Codes{});
+    }
+    const auto refused = [](const std::string& vtk, std::string_view words) {
+        EXPECT_NE(fault(vtk, "a.vtk").find(words), std::string::npos) << fault(vtk, "a.vtk");
+    };
+    refused(one + scalars(2), "values for 2 cells, and 1 cells");
+    refused(one + field(2, 2), "values for 2 cells, and 1 cells");
+    refused(one + field(1, 2), "values for 2 cells, and 1 cells");
+    refused(four + scalars(1), "values for 1 cells, and 4 cells");
+    refused(four + scalars(5), "values for 5 cells, and 4 cells");
+}
+
+TEST(Counts, OfComponentsOfVtpPlacesAreThree) {
+    const std::string vtp = written(ball(), "a.vtp");
+    for (const std::string name : {"Points", "Normals"}) {
+        const std::string before = "Name=\"" + name + "\" NumberOfComponents=\"";
+        ASSERT_NE(vtp.find(before + "3\""), std::string::npos);
+        for (const char* const other : {"1", "2", "4"}) {
+            const std::string bytes = replaced(vtp, before + "3\"", before + other + "\"");
+            EXPECT_NE(fault(bytes, "a.vtp").find("components (NumberOfComponents), must have 3"),
+                      std::string::npos);
+        }
+    }
+}
+
 TEST(Counts, ACommentBehindVtpIsNothing) {
     const std::string vtp = written(ball(), "a.vtp");
     EXPECT_EQ(codesOf(decoded(vtp + "<!-- end -->\n<!-- > -->\n", "a.vtp")), Codes{});
