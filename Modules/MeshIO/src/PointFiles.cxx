@@ -407,7 +407,7 @@ PointFile decodeFiff(std::string_view bytes) {
                                                  : "FIFF frame " + std::to_string(frame);
     std::vector<std::string> names;  // of electrodes, in their order
     if (const fiff::Tag* tag = content.find(block, fiff::kMneChannelNames)) {
-        std::istringstream list{std::string(tag->data)};
+        std::istringstream list{toUtf8(tag->data)};
         for (std::string name; std::getline(list, name, ':');) names.push_back(name);
     }
     std::size_t electrodes = 0;

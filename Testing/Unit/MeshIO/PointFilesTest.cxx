@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "MeshIOTestSupport.h"
@@ -247,6 +248,22 @@ TEST(PointFiles, OfLatin1HaveNamesOfUtf8) {
                                                 extension, "a");
         EXPECT_EQ(controls.points[2].name, "a b") << extension;
     }
+}
+
+TEST(PointFiles, NamesOfFiffMayBeLatin1) {
+    const auto fif = temporaryFile("a.fif");
+    std::vector<NamedPoint> points(kPoints.begin(), kPoints.end());
+    for (NamedPoint& point : points) {
+        if (point.kind == PointKind::Electrode) point.name = "C\xE9\xDF";  // as Latin-1 has them
+    }
+    std::erase_if(points, [seen = false](const NamedPoint& point) mutable {
+        return point.kind == PointKind::Electrode && std::exchange(seen, true);
+    });
+    writeFiffPoints(points, fif);
+    const PointFile file = readPoints(fif);
+    const auto electrode = std::ranges::find(file.points, PointKind::Electrode, &NamedPoint::kind);
+    ASSERT_NE(electrode, file.points.end());
+    EXPECT_EQ(electrode->name, "C\xC3\xA9\xC3\x9F");
 }
 
 TEST(PointFiles, OfFiffAreOneFileAlone) {
