@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <charconv>
 #include <cstring>
 #include <new>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "FileFault.h"
@@ -457,6 +459,110 @@ void requirePlausibleSize(const ZarrImage& image) {
            "take a coarser level (--level), or adaptiso-giant, which works tile by tile");
 }
 
+/// Looks for a file of a chunk beyond the array's shape by the names in its folder alone.
+class ChunksBeyond {
+public:
+    ChunksBeyond(const ZarrStore& store, const ZarrArray& array) : array_(array) {
+        const ZarrIndex& side = array.sharding ? array.sharding->shard : array.chunk;
+        for (std::size_t n = 0; n < array.rank(); ++n) {
+            counts_.push_back((array.shape[n] + side[n] - 1) / side[n]);
+        }
+        if (array.isN5) std::reverse(counts_.begin(), counts_.end());
+        folder_ = store.root() / array.path;
+    }
+
+    /// Relative to the array's folder; empty where there is none, or none among the first names.
+    fs::path find() {
+        if (array_.separator != '/') return findFlat();
+        return array_.hasKeyPrefix ? findBelow("c", 0, false) : findBelow("", 0, false);
+    }
+
+private:
+    /// As keys write it. \return  empty for other names
+    static std::optional<std::uint64_t> numberOf(std::string_view text) {
+        std::uint64_t number = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        const bool isWhole = error == std::errc() && end == text.data() + text.size();
+        const bool isKey = isWhole && (text == "0" || text.front() != '0');
+        return isKey ? std::optional(number) : std::nullopt;
+    }
+
+    /// Calls f(entry) for a folder's entries, while it is false and `left_` lasts.
+    template <class F>
+    void forEach(const fs::path& folder, const F& f) {
+        std::error_code error;
+        for (fs::directory_iterator at(folder, error), end; !error && at != end;
+             at.increment(error)) {
+            if (left_-- <= 0 || f(*at)) return;
+        }
+    }
+
+    /// "0.0.3", "c.0.0.3"
+    fs::path findFlat() {
+        fs::path found;
+        forEach(folder_, [&](const fs::directory_entry& entry) {
+            const std::string name = entry.path().filename().string();
+            std::string_view rest = name;
+            if (array_.hasKeyPrefix) {
+                if (!rest.starts_with("c.")) return false;
+                rest.remove_prefix(2);
+            }
+            bool isBeyond = false;
+            for (std::size_t n = 0; n < counts_.size(); ++n) {
+                const bool isLast = n + 1 == counts_.size();
+                const std::size_t end = isLast ? rest.size() : rest.find(array_.separator);
+                if (end == rest.npos) return false;
+                const auto number = numberOf(rest.substr(0, end));
+                if (!number) return false;
+                isBeyond = isBeyond || *number >= counts_[n];
+                rest.remove_prefix(isLast ? end : end + 1);
+            }
+            if (isBeyond) found = name;
+            return isBeyond;
+        });
+        return found;
+    }
+
+    /// "0/0/3"; a folder may be empty. Links to folders are not followed.
+    fs::path findBelow(const fs::path& parent, std::size_t dimension, bool isBeyond) {
+        fs::path found;
+        forEach(folder_ / parent, [&](const fs::directory_entry& entry) {
+            const fs::path name = entry.path().filename();
+            const auto number = numberOf(name.native());
+            if (!number) return false;
+            const bool isOwn = isBeyond || *number >= counts_[dimension];
+            std::error_code error;
+            if (dimension + 1 < counts_.size()) {
+                const bool isFolder = fs::is_directory(entry.symlink_status(error));
+                if (isFolder) found = findBelow(parent / name, dimension + 1, isOwn);
+            } else if (isOwn && !entry.is_directory(error)) {
+                found = parent / name;
+            }
+            return !found.empty();
+        });
+        return found;
+    }
+
+    const ZarrArray& array_;
+    fs::path folder_;
+    ZarrIndex counts_;                           ///< of files, in the order of keys
+    std::int64_t left_ = std::int64_t{1} << 17;  ///< names to look at
+};
+
+/// \throws FileError  the store holds more of the image than the shape in its metadata
+void requireNoChunksBeyond(const ZarrStore& store, const ZarrArray& array) {
+    const fs::path beyond = ChunksBeyond(store, array).find();
+    if (beyond.empty()) return;
+    std::string shape;
+    for (const std::uint64_t size : array.shape) {
+        shape += (shape.empty() ? "" : " x ") + std::to_string(size);
+    }
+    refuse(store.root() / array.path,
+           fmt::format("holds chunks beyond the shape that its metadata state ({}): {}", shape,
+                       printable(beyond.generic_string())),
+           "correct the shape, or remove the chunks that are no part of the image");
+}
+
 }  // namespace
 
 bool ZarrCut::isSpace(std::size_t dimension) const {
@@ -475,6 +581,7 @@ ZarrImage openZarrImage(const fs::path& folder, const ReadOptions& options) {
         refuse(folder / scene.path, "there is no array, which the metadata name",
                "get the dataset again");
     }
+    requireNoChunksBeyond(store, *array);
     ZarrCut cut = cutOf(folder, *array, scene, options);
     const ImageGeometry geometry = geometryOf(folder, *array, cut, scene);
     requireImageBytes(folder, geometry.size, array->type);

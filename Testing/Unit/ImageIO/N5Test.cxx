@@ -107,6 +107,21 @@ TEST_F(N5Test, IsReadInEveryCodec) {
     }
 }
 
+TEST_F(N5Test, BlocksBeyondTheDimensionsAreMoreOfTheImage) {
+    putArray("");
+    for (const char* const key : {"2/0/0", "0/2/0", "0/0/2"}) {
+        put(key, blockAt(0, 0, 0, same));
+        expectRefused(std::string("beyond the shape that its metadata state (5 x 6 x 7): ") + key);
+        fs::remove(root_ / key);
+        expectValues(readVolume(root_));
+    }
+    // fewer planes along x, which is named first
+    Text fewer = metadata(R"({"type": "raw"})");
+    fewer.replace(fewer.find("[7"), 2, "[4");
+    put("attributes.json", fewer);
+    expectRefused("holds chunks beyond the shape");
+}
+
 TEST_F(N5Test, BeforeVersion2CompressionWasAName) {
     put("attributes.json", R"({"dimensions": [7, 6, 5], "blockSize": [4, 4, 4],
                                "dataType": "int16", "compressionType": "gzip"})");

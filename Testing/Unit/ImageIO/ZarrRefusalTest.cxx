@@ -45,6 +45,43 @@ TEST_F(ZarrRefusalTest, OnlyAChunkThatIsNotThereIsFill) {
     expectRefused("1.0.1");
 }
 
+TEST_F(ZarrRefusalTest, ChunksBeyondTheShapeAreMoreOfTheImage) {
+    const auto expectBeyond = [&](const std::string& prefix, const std::string& separator) {
+        for (int dimension = 0; dimension < 3; ++dimension) {
+            std::string key = prefix;
+            for (int n = 0; n < 3; ++n) {
+                key += (n == 0 ? "" : separator) + std::string(n == dimension ? "2" : "0");
+            }
+            SCOPED_TRACE(key);
+            put(key, chunkAt(0, 0, 0));
+            expectRefused("beyond the shape that its metadata state (5 x 6 x 7): " + key);
+            fs::remove(root_ / key);
+            expectValues(readVolume(root_));  // folders may be left behind
+        }
+    };
+    put(".zarray", metadata2("null"));
+    putChunks("", ".", same);
+    expectBeyond("", ".");
+    for (const char* const other : {"2.0.0.0", "2.0", "02.0.0", "2.0.0.partial", "x.0.0", "2"}) {
+        put(other, "no chunk");
+    }
+    expectValues(readVolume(root_));
+    fs::remove_all(root_);
+    put(".zarray", metadata2("null", R"(, "dimension_separator": "/")"));
+    putChunks("", "/", same);
+    expectBeyond("", "/");
+    fs::remove_all(root_);
+    put("zarr.json", metadata3(R"([{"name": "bytes", "configuration": {"endian": "little"}}])"));
+    putChunks("c/", "/", same);
+    expectBeyond("c/", "/");
+    fs::remove_all(root_);
+    put("zarr.json", metadata3(R"([{"name": "bytes", "configuration": {"endian": "little"}}])",
+                               R"(, "chunk_key_encoding": {"name": "default",
+                                  "configuration": {"separator": "."}})"));
+    putChunks("c.", ".", same);
+    expectBeyond("c.", ".");
+}
+
 TEST_F(ZarrRefusalTest, LinksLeadNowhereButIntoTheDatasetAndItsAnnex) {
     const fs::path outside = root_.string() + "-outside";
     fs::remove_all(outside);
