@@ -21,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kDescription = "dataset_description.json";
+constexpr const char* kLinkFault =
+    "is, or lies behind, a link to outside of its dataset; put the data themselves there";
 
 /// By name, so that the order is the same on every file system.
 std::vector<fs::path> sorted(std::vector<fs::path> paths) {
@@ -63,7 +65,16 @@ void addImages(const fs::path& root, const fs::path& folder, const fs::path& tar
                const BidsImages& images, const BidsIgnore& ignored, std::vector<BatchItem>& items) {
     std::vector<fs::path> files;
     std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder / "anat", error)) {
+    const fs::path anat = folder / "anat";
+    if (fs::exists(anat, error) && !liesIn(anat, root)) {
+        std::string name;  // none of what lies in there
+        for (const fs::path& part : folder.lexically_relative(root)) {
+            name += (name.empty() ? "" : "_") + part.string();
+        }
+        items.push_back({name, {anat}, target / "anat", kLinkFault});
+        return;
+    }
+    for (const fs::directory_entry& entry : fs::directory_iterator(anat, error)) {
         files.push_back(entry.path());
     }
     for (const fs::path& file : sorted(files)) {
@@ -75,9 +86,7 @@ void addImages(const fs::path& root, const fs::path& folder, const fs::path& tar
                 continue;
             BatchItem item{name.substr(0, name.size() - ending.size()), {file}, target / "anat"};
             if (fs::exists(file, error) && !liesIn(file, root)) {
-                item.fault =
-                    "is, or lies behind, a link to outside of its dataset; put the file "
-                    "itself there";
+                item.fault = kLinkFault;
             }
             if (!items.empty() && items.back().name == item.name &&
                 items.back().folder == item.folder) {
