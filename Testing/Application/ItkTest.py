@@ -545,6 +545,54 @@ class OtherFormats(ApplicationTest):
             self.path("y.spr").write_text(STIMULATE + line + "\n")
             self.assert_fails(BAD_INPUT, fault, "y.spr", "--info")
 
+    def test_files_beside_that_are_links_to_elsewhere_are_not_read(self):
+        """ITK's readers of these take slices, headers and data from other files than the one named."""
+        def series(make):
+            return {f"I.00{k}": make(k) for k in range(4)}
+
+        cases = {"GE 5": (series(ge_5), "I.000", "I.002"), "GE 4": (series(ge_4), "I.000", "I.002"),
+                 "GE Advantage": (series(ge_advantage), "I.000", "I.002"),
+                 "Siemens Vision": (series(vision), "I.000", "I.002"),
+                 "Bruker": ({"2dseq": struct.pack("<192h", *samples()), "visu_pars": VISU_PARS.encode()},
+                            "2dseq", "visu_pars"),
+                 "Stimulate": ({"x.spr": STIMULATE.encode(), "x.sdt": big(samples())}, "x.spr", "x.sdt")}
+        for kind, (files, named, linked) in cases.items():
+            with self.subTest(kind):
+                shutil.rmtree(self.path("in"), ignore_errors=True)
+                shutil.rmtree(self.path("elsewhere"), ignore_errors=True)
+                self.path("in").mkdir()
+                self.path("elsewhere").mkdir()
+                for name, content in files.items():
+                    (self.path("in") / name).write_bytes(content)
+                self.image(f"in/{named}")
+                (self.path("in") / linked).rename((self.path("elsewhere") / linked))
+                (self.path("in") / linked).symlink_to((self.path("elsewhere") / linked))
+                self.assert_fails(BAD_INPUT, f"{linked}: is, or lies behind, a link to outside of its folder",
+                                  f"in/{named}", "--info")
+                # links within the folder are as good as files, and so is a folder of a link's target
+                (self.path("elsewhere") / linked).rename((self.path("in") / "kept"))
+                (self.path("in") / linked).unlink()
+                (self.path("in") / linked).symlink_to("kept")
+                if kind in ("Bruker", "Stimulate"):
+                    self.image(f"in/{named}")
+                    (self.path("elsewhere") / named).symlink_to((self.path("in") / named))
+                    (self.path("in") / linked).unlink()
+                    (self.path("in") / "kept").rename((self.path("in") / linked))
+                    if kind == "Stimulate":
+                        (self.path("elsewhere") / linked).symlink_to((self.path("in") / linked))
+                        self.image(f"elsewhere/{named}")
+
+    def test_bruker_may_have_its_other_headers_two_folders_above(self):
+        folder = self.path("7") / "pdata" / "1"
+        folder.mkdir(parents=True)
+        (folder / "visu_pars").write_text(VISU_PARS)
+        (folder / "2dseq").write_bytes(struct.pack("<192h", *samples()))
+        (self.path("7") / "acqp").write_text(VISU_PARS)
+        self.image("7/pdata/1/2dseq")
+        (self.path("7") / "acqp").rename(self.path("acqp"))
+        (self.path("7") / "acqp").symlink_to(self.path("acqp"))
+        self.assert_fails(BAD_INPUT, "acqp: is, or lies behind, a link to outside", "7/pdata/1/2dseq", "--info")
+
     def test_plug_ins_by_others_are_asked_last(self):
         """As ITK_AUTOLOAD_PATH names them; our own one there does no harm."""
         self.path("x.others").write_bytes(b"by others")

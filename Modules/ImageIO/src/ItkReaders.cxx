@@ -2,9 +2,13 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "HeaderText.h"
 #include "Readers.h"
 #include "Samples.h"
 #include "Sandbox.h"
@@ -57,6 +61,43 @@ ItkReader loadItkReader() {
     return reinterpret_cast<ItkReader>(dlsym(library, kItkReaderName));
 }
 
+void addFoldersOf(const char* variable, std::vector<fs::path>& places) {
+    const char* const value = std::getenv(variable);
+    std::string_view list = value == nullptr ? "" : value;
+    while (!list.empty()) {
+        const std::size_t end = std::min(list.find(':'), list.size());
+        if (end > 0) places.emplace_back(list.substr(0, end));
+        list.remove_prefix(std::min(end + 1, list.size()));
+    }
+}
+
+/// The folder of `file` and, for Bruker's pdata/1/2dseq, that of its acquisition (acqp, method);
+/// git-annex's content of either.
+void addFolderOf(const fs::path& file, std::vector<fs::path>& places) {
+    std::error_code error;
+    fs::path folder = fs::canonical(fs::absolute(file, error).parent_path(), error);
+    if (error) return;
+    const bool isBruker = file.filename() == "2dseq" && folder.parent_path().filename() == "pdata";
+    if (isBruker) folder = folder.parent_path().parent_path();
+    places.push_back(folder);
+    for (; folder.has_relative_path(); folder = folder.parent_path()) {
+        places.push_back(folder / ".git/annex/objects");
+    }
+}
+
+/// Where ITK's readers may open files: beside the input, and where libraries are.
+std::vector<fs::path> placesFor(const fs::path& input) {
+    std::vector<fs::path> places{"/usr", "/lib", "/lib64", "/etc/ld.so.cache"};
+    places.push_back(itkLibrary().parent_path());
+    addFoldersOf("LD_LIBRARY_PATH", places);
+    addFoldersOf("ITK_AUTOLOAD_PATH", places);
+    addFolderOf(input, places);
+    std::error_code error;
+    const fs::path target = fs::canonical(input, error);
+    if (!error) addFolderOf(target, places);
+    return places;
+}
+
 }  // namespace
 
 bool hasItkReaders() {
@@ -72,7 +113,11 @@ std::optional<ReadVolume> readWithItk(const fs::path& input, const ReadOptions& 
     const auto choose = [&](std::int64_t count) { return chooseVolume(input, count, options); };
     const auto read = [&] {
         std::optional<ReadVolume> result;
+        const std::vector<fs::path> places = placesFor(input);
         const ItkReader reader = loadItkReader();
+        // libminc writes MINC 1 (netCDF, which leads to no other file) anew in a temporary file
+        const bool isNetCdf = readHead(input, 3) == "CDF";
+        if (isInSandbox() && !isNetCdf) openOnlyBelow(places);
         if (reader != nullptr) reader({input, allocate, choose}, result);
         if (!result) throw InvalidInput("");
         return std::move(*result);

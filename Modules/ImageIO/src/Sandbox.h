@@ -54,6 +54,11 @@ void blameInSandbox(const std::filesystem::path& file);
 
 bool isInSandbox();
 
+/// In a sandbox process: from now on it opens files below `places` alone, wherever links and names
+/// in files lead, and writes none. Places that are missing are passed over.
+/// \return false, and nothing is changed, where the kernel has no Landlock (Linux 5.13)
+bool openOnlyBelow(const std::vector<std::filesystem::path>& places);
+
 /// Memory that outlives the child. \pre isInSandbox() \return empty when memory is short
 std::shared_ptr<std::byte[]> allocateSharedBytes(std::uint64_t byteCount);
 

@@ -2,7 +2,12 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
+#if __has_include(<linux/landlock.h>)
+#include <linux/landlock.h>
+#endif
 
 #include <algorithm>
 #include <cerrno>
@@ -206,6 +211,41 @@ pid_t forkSandboxChild(const SandboxChildSetup& setup, const std::function<ReadV
 bool isInSandbox() {
     return arena != nullptr;
 }
+
+#if defined(LANDLOCK_ACCESS_FS_READ_FILE) && defined(SYS_landlock_create_ruleset)
+
+bool openOnlyBelow(const std::vector<std::filesystem::path>& places) {
+    if (!isInSandbox()) throw InternalError("openOnlyBelow: this is no sandbox process");
+    constexpr std::uint64_t kRead = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+    landlock_ruleset_attr rules{};
+    rules.handled_access_fs = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;  // all of its first version
+    const auto ruleset =
+        static_cast<int>(::syscall(SYS_landlock_create_ruleset, &rules, sizeof rules, 0));
+    if (ruleset < 0) return false;
+    for (const std::filesystem::path& place : places) {
+        const int found = ::open(place.c_str(), O_PATH | O_CLOEXEC);
+        struct stat status {};
+        if (found < 0) continue;
+        landlock_path_beneath_attr below{};
+        below.parent_fd = found;
+        const bool isFolder = ::fstat(found, &status) == 0 && S_ISDIR(status.st_mode);
+        below.allowed_access = isFolder ? kRead : LANDLOCK_ACCESS_FS_READ_FILE;
+        ::syscall(SYS_landlock_add_rule, ruleset, LANDLOCK_RULE_PATH_BENEATH, &below, 0);
+        ::close(found);
+    }
+    const bool isConfined = ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+                            ::syscall(SYS_landlock_restrict_self, ruleset, 0) == 0;
+    ::close(ruleset);
+    return isConfined;
+}
+
+#else
+
+bool openOnlyBelow(const std::vector<std::filesystem::path>&) {
+    return false;
+}
+
+#endif
 
 void blameInSandbox(const std::filesystem::path& file) {
     if (arena != nullptr) arena->blame(file.native());

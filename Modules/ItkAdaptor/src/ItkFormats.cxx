@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/TextLines.h"
 #include "adaptiso/ImageIO/ItkReaders.h"
 
@@ -54,6 +55,7 @@ struct Format {
     std::vector<Doubt> doubts{};
     bool isRas = false;         ///< ITK 5.2 keeps the file's own axes
     bool mayStopShort = false;  ///< without a word, where the file ends early
+    bool opensOthers = false;   ///< files beside the one that is named
 };
 
 template <class Io>
@@ -67,12 +69,17 @@ const Format kFormats[] = {
     {"TIFF", make<itk::TIFFImageIO>, {kOrientation, kSpacing}},
     {"VTK image", make<itk::VTKImageIO>, {kOrientation}, false, true},
     {"MRC", make<itk::MRCImageIO>, {kOrientation, kUnit}, false, true},
-    {"Bruker 2dseq", make<itk::Bruker2dseqImageIO>, {kEvenSteps, kOneVoxel}},
-    {"GE 4", make<itk::GE4ImageIO>, {kEvenSteps, kPlane, kPosition}},
-    {"GE 5", make<itk::GE5ImageIO>, {kEvenSteps, kOneVoxel}},
-    {"GE Advantage", make<itk::GEAdwImageIO>, {kThickness, kPlane, kPosition}},
-    {"Siemens Vision", make<itk::SiemensVisionImageIO>, {kWholeThickness, kPlane, kPosition}},
-    {"Stimulate", make<itk::StimulateImageIO>, {kOrientation}},
+    {"Bruker 2dseq", make<itk::Bruker2dseqImageIO>, {kEvenSteps, kOneVoxel}, false, false, true},
+    {"GE 4", make<itk::GE4ImageIO>, {kEvenSteps, kPlane, kPosition}, false, false, true},
+    {"GE 5", make<itk::GE5ImageIO>, {kEvenSteps, kOneVoxel}, false, false, true},
+    {"GE Advantage", make<itk::GEAdwImageIO>, {kThickness, kPlane, kPosition}, false, false, true},
+    {"Siemens Vision",
+     make<itk::SiemensVisionImageIO>,
+     {kWholeThickness, kPlane, kPosition},
+     false,
+     false,
+     true},
+    {"Stimulate", make<itk::StimulateImageIO>, {kOrientation}, false, false, true},
     {"ITK HDF5", make<itk::HDF5ImageIO>},
 };
 
@@ -248,6 +255,28 @@ void requirePlainMrc(const std::filesystem::path& path) {
     }
 }
 
+/// ITK's readers of such formats take slices, headers and data of the files beside the one that is
+/// named; Bruker's of the acquisition's folder, two above (acqp, method).
+/// \throws FileError  one of these is a link to outside of it
+void requireNoLinkOut(const Format& format, const std::filesystem::path& path) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::absolute(path).parent_path();
+    const bool isBruker =
+        format.name == "Bruker 2dseq" && folder.parent_path().filename() == "pdata";
+    const fs::path acquisition = folder.parent_path().parent_path();
+    std::vector<fs::path> folders{folder};
+    if (isBruker) folders.push_back(acquisition);
+    std::error_code error;
+    for (const fs::path& each : folders) {
+        for (const fs::directory_entry& entry : fs::directory_iterator(each, error)) {
+            if (!entry.is_symlink(error) || !fs::is_regular_file(entry.path(), error)) continue;
+            if (fs::equivalent(entry.path(), path, error)) continue;  // the user named it
+            if (isBruker && liesIn(entry.path(), acquisition)) continue;
+            requireBeside(entry.path(), path);
+        }
+    }
+}
+
 /// Its header is 14336 bytes; ITK's reader takes the end of each file of the series for the slice.
 void requireWholeGe4(itk::ImageIOBase& io, const std::filesystem::path& path) {
     const std::filesystem::path folder = path.parent_path();
@@ -296,6 +325,7 @@ void readWhole(const Format& format, itk::ImageIOBase& io, const ItkRequest& req
 }
 
 ReadVolume readBy(const Format& format, itk::ImageIOBase& io, const ItkRequest& request) {
+    if (format.opensOthers) requireNoLinkOut(format, request.file);
     if (format.name == "MINC") requireWholeNetCdf(request.file);
     if (format.name == "GE 4") requireWholeGe4(io, request.file);
     if (format.name == "MRC") requirePlainMrc(request.file);

@@ -54,6 +54,33 @@ std::string refusal(const std::function<ReadVolume()>& read, const SandboxLimits
     return {};
 }
 
+TEST(Sandbox, OpensFilesBelowItsPlacesAlone) {
+    const TempFolder folder;
+    const auto inside = folder / "in", outside = folder / "out";
+    std::filesystem::create_directories(inside / "deep");
+    std::filesystem::create_directories(outside);
+    writeFile(inside / "deep/a", "a");
+    writeFile(outside / "b", "b");
+    std::filesystem::create_symlink(outside / "b", inside / "link");
+    std::filesystem::create_symlink(inside / "deep/a", outside / "back");
+    const auto opens = [](const std::filesystem::path& file) {
+        return std::ifstream(file).good() ? '1' : '0';
+    };
+    const std::string found = refusal([&]() -> ReadVolume {
+        std::string text;
+        if (!detail::openOnlyBelow({inside, folder / "missing"})) throw FileError("no Landlock");
+        for (const auto& file : {inside / "deep/a", outside / "back", inside / "link",
+                                 outside / "b", inside / "../out/b"}) {
+            text += opens(file);
+        }
+        text += std::ofstream(inside / "new").good() ? '1' : '0';
+        throw FileError(text);
+    });
+    if (found == "no Landlock") GTEST_SKIP() << found;
+    EXPECT_EQ(found, "110000");
+    EXPECT_EQ(opens(outside / "b"), '1');  // this process is as free as before
+}
+
 void expectOneLine(const std::string& message, std::string_view fault) {
     EXPECT_TRUE(message.starts_with("folder/x.dcm: ")) << message;
     EXPECT_NE(message.find(fault), std::string::npos) << message << "\nwanted: " << fault;
