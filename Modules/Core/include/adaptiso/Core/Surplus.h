@@ -8,7 +8,8 @@ namespace adaptiso {
 
 // What a file holds behind the data that it counts. One rule for images and meshes:
 //   zeros, no more than kMostPadding  padding: a warning
-//   isMoreData()                      more of the same than was counted: refused
+//   isMoreData()                      more of the same than was counted: refused; of images also
+//                                     a row or column of every slice (isMoreImage())
 //   anything else                     a warning
 
 inline constexpr std::size_t kMostPadding = std::size_t{1} << 16;
