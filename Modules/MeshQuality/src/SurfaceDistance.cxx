@@ -441,10 +441,27 @@ std::optional<GapCandidate> nearestByBoxes(const TriangleMesh& a, const AabbTree
     return best == ofPiece.end() ? GapCandidate{} : *best;
 }
 
+/// The smallest squared distance of the vertices of `a` to `b`.
+double vertexReach(const TriangleMesh& a, const TriangleMesh& b, const AabbTree& treeB) {
+    std::vector<double> squared(a.points.size(), std::numeric_limits<double>::infinity());
+    std::vector<bool> isUsed(a.points.size());
+    for (std::int64_t n = 0; n < std::ssize(a.triangles); ++n) {
+        if (!areFinite(cornersOf(a, n))) continue;
+        for (const VertexId v : a.triangles[n]) isUsed[v] = true;
+    }
+    findNearestPlaces(
+        b, treeB, std::ssize(a.points),
+        [&](VertexId v) { return isUsed[v] ? std::optional(a.points[v]) : std::nullopt; },
+        [&](VertexId v, const ClosestPoint& nearest) { squared[v] = nearest.squaredDistanceMm2; });
+    return *std::min_element(squared.begin(), squared.end());
+}
+
 /// The same by groups that planes tell apart.
+/// \param reach       that some pair has, squared
 /// \param isComplete  becomes false where these are more than their budget allows
-GapCandidate nearestByGroups(const TriangleMesh& a, const TriangleMesh& b, double reach,
-                             bool& isComplete) {
+GapCandidate nearestByGroups(const TriangleMesh& a, const AabbTree& treeA, const TriangleMesh& b,
+                             const AabbTree& treeB, double reach, bool& isComplete) {
+    reach = std::min({reach, vertexReach(a, b, treeB), vertexReach(b, a, treeA)});
     const NumberedTriangles ours(a), theirs(b);
     const TriangleView viewA = ours.view(), viewB = theirs.view();
     GapCandidate best;
@@ -472,7 +489,7 @@ SurfaceGap surfaceGap(const TriangleMesh& a, const AabbTree& treeA, const Triang
     const double reach = firstReach(a, treeB);
     SurfaceGap gap;
     std::optional<GapCandidate> best = nearestByBoxes(a, treeA, b, treeB, reach);
-    if (!best) best = nearestByGroups(a, b, reach, gap.isComplete);
+    if (!best) best = nearestByGroups(a, treeA, b, treeB, reach, gap.isComplete);
     if (best->triangleA < 0) return gap;
     gap.nearest = triangleDistance(cornersOf(a, best->triangleA), cornersOf(b, best->triangleB));
     gap.triangleA = best->triangleA;

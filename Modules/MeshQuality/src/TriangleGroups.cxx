@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -65,8 +66,10 @@ Vec3 centreOf(const Corners& c) {
 TriangleGroups::Budget TriangleGroups::Budget::of(std::int64_t triangles) {
     constexpr std::int64_t kGroups = 64, kPairs = 32;  // near each group of triangles
     constexpr std::int64_t kAllGroups = 1 << 18, kAllPairs = 1 << 22;  // near all of few groups
+    constexpr std::int64_t kFewPut = 1 << 14, kTests = 16;
     const std::int64_t groups = triangles / kLeafTriangles + 1;
-    return {std::max(kGroups, kAllGroups / groups), std::max(kPairs, kAllPairs / groups)};
+    return {std::max(kGroups, kAllGroups / groups), std::max(kPairs, kAllPairs / groups),
+            kFewPut + groups, kAllGroups + kTests * groups};
 }
 
 std::span<const Vec3> TriangleGroups::pointsOf(const Subtree& group) const {
@@ -257,6 +260,53 @@ void TriangleGroups::measure(const TriangleView& of, const Subtree& group) {
     }
 }
 
+namespace {
+
+/// True if the hulls of two sets of points surely lie further apart than `reach`: the nearest
+/// points of hulls by [Gilbert1988], whose every direction bounds their distance from below.
+/// \param v  the difference of a point of each hull
+bool areHullsFarther(std::span<const Vec3> a, std::span<const Vec3> b, Vec3 v, double reach) {
+    constexpr int kSteps = 24;
+    std::array<Vec3, 3> simplex{v, v, v};
+    for (int step = 0; step < kSteps; ++step) {
+        const double length = norm(v);
+        if (!(length > reach)) return false;
+        double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+        Vec3 low, high;
+        for (const Vec3& p : a) {
+            const double height = dot(v, p);
+            if (height < lowest) {
+                lowest = height;
+                low = p;
+            }
+        }
+        for (const Vec3& p : b) {
+            const double height = dot(v, p);
+            if (height > highest) {
+                highest = height;
+                high = p;
+            }
+        }
+        if (lowest - highest > reach * length) return true;
+        const Vec3 support = low - high;
+        const std::array<Vec3, 3> before = simplex;
+        Vec3 next = v;
+        for (int n = 0; n < 3; ++n) {
+            std::array<Vec3, 3> sides = before;
+            sides[n] = support;
+            const Vec3 nearest = closestPointOnTriangle({}, sides[0], sides[1], sides[2]);
+            if (squaredNorm(nearest) >= squaredNorm(next)) continue;
+            next = nearest;
+            simplex = sides;
+        }
+        if (next == v) return false;
+        v = next;
+    }
+    return false;
+}
+
+}  // namespace
+
 /// A plane lies between two groups; of one mesh, it may pass through one or two hubs that both
 /// have.
 ///
@@ -266,6 +316,10 @@ bool TriangleGroups::areApart(const TriangleGroups& a, const Subtree& i, const T
                               const Subtree& j, double reachMm) {
     const Node &m = a.nodes_[i.node], &n = b.nodes_[j.node];
     if (squaredDistance(m.box, n.box) > reachMm * reachMm) return true;
+    if (reachMm > 0) {
+        return areHullsFarther(a.pointsOf(i), b.pointsOf(j), m.mean - n.mean,
+                               reachMm + std::max(a.gap_, b.gap_));
+    }
     std::array<Vec3, 2> hubs;
     std::size_t shared = 0;
     if (&a == &b) {
@@ -309,7 +363,7 @@ bool TriangleGroups::areApart(const TriangleGroups& a, const Subtree& i, const T
     const Inverse inverse(squares, kRidge);
     Vec3 w = sideways(inverse * sideways(between));
 
-    const double gap = std::max(a.gap_, b.gap_) + reachMm;
+    const double gap = std::max(a.gap_, b.gap_);
     const auto isHub = [&](const Vec3& p) {
         return (shared > 0 && p == hubs[0]) || (shared > 1 && p == hubs[1]);
     };
@@ -363,6 +417,8 @@ struct TriangleGroups::Search {
     struct Found {
         std::vector<std::array<std::uint32_t, 2>> pairs;
         std::int64_t tests = 0;
+        std::vector<std::array<Subtree, 2>> putOff;  ///< pairs of groups beyond the budget
+        bool areTooMany = false;                     ///< there were more of them
     };
 
     bool isOne() const { return &own == &other; }
@@ -373,8 +429,17 @@ struct TriangleGroups::Search {
             .store(1, std::memory_order_relaxed);
     }
 
+    void putOff(const Subtree& i, const Subtree& j, Found& found) {
+        if (std::ssize(found.putOff) < budget.putOff) {
+            found.putOff.push_back({i, j});
+        } else {
+            found.areTooMany = true;
+            leaveUndecided(i, j);
+        }
+    }
+
     /// Those of `near`, or their halves, that are near the group.
-    std::vector<Subtree> nearOf(const Subtree& group, std::span<const Subtree> near) {
+    std::vector<Subtree> nearOf(const Subtree& group, std::span<const Subtree> near, Found& found) {
         std::vector<Subtree> nearer;
         const auto add = [&](const Subtree& j) {
             if (!areApart(own, group, other, j, reachMm)) nearer.push_back(j);
@@ -394,7 +459,7 @@ struct TriangleGroups::Search {
             if (n * budget.groups / count == kept) {
                 nearer[kept++] = nearer[n];
             } else {
-                leaveUndecided(group, nearer[n]);
+                putOff(group, nearer[n], found);
             }
         }
         nearer.resize(static_cast<std::size_t>(kept));
@@ -404,7 +469,8 @@ struct TriangleGroups::Search {
     void visit(const Subtree& group, const std::vector<Subtree>& near, Found& found) {
         if (group.isLeaf()) return visitLeaf(group, near, found);
         const Subtree left = group.left(), right = group.right();
-        std::vector<Subtree> ofLeft = nearOf(left, near), ofRight = nearOf(right, near);
+        std::vector<Subtree> ofLeft = nearOf(left, near, found),
+                             ofRight = nearOf(right, near, found);
         if (isOne() && !areApart(own, left, own, right, 0)) ofLeft.push_back(right);
         if (!isOne() && ofLeft.empty() && ofRight.empty()) return;
         constexpr std::int64_t kParallelLeaves = 64;
@@ -417,12 +483,14 @@ struct TriangleGroups::Search {
         parallelInvoke([&] { visit(left, ofLeft, found); }, [&] { visit(right, ofRight, more); });
         found.pairs.insert(found.pairs.end(), more.pairs.begin(), more.pairs.end());
         found.tests += more.tests;
+        found.areTooMany = found.areTooMany || more.areTooMany;
+        for (const auto& [i, j] : more.putOff) putOff(i, j, found);
     }
 
     void visitLeaf(const Subtree& group, std::vector<Subtree> near, Found& found) {
         while (
             std::any_of(near.begin(), near.end(), [](const Subtree& j) { return !j.isLeaf(); })) {
-            near = nearOf(group, near);
+            near = nearOf(group, near, found);
         }
         const std::size_t before = found.pairs.size();
         if (isOne()) {
@@ -435,8 +503,39 @@ struct TriangleGroups::Search {
                 leaveUndecided(group, j);
                 continue;
             }
-            for (std::int64_t n = own.begin(group); n < own.end(group); ++n) {
-                for (std::int64_t k = other.begin(j); k < other.end(j); ++k) test(n, k, found);
+            testAll(group, j, found);
+        }
+    }
+
+    void testAll(const Subtree& i, const Subtree& j, Found& found) const {
+        for (std::int64_t n = own.begin(i); n < own.end(i); ++n) {
+            for (std::int64_t k = other.begin(j); k < other.end(j); ++k) test(n, k, found);
+        }
+    }
+
+    /// Groups that hold triangles of two places, as where a hub's number is no multiple of a
+    /// leaf's, are near very many others, but few: they share what all are allowed.
+    void decidePutOff(Found& found) {
+        const std::int64_t mostPairs =
+            std::ssize(found.pairs) + budget.pairs * std::max(own.leafCount(), other.leafCount());
+        std::int64_t tests = 0;
+        std::vector<std::array<Subtree, 2>> left = std::move(found.putOff);
+        std::reverse(left.begin(), left.end());
+        while (!left.empty()) {
+            const auto [i, j] = left.back();
+            left.pop_back();
+            if (found.areTooMany || tests > budget.tests || std::ssize(found.pairs) > mostPairs) {
+                leaveUndecided(i, j);
+                continue;
+            }
+            ++tests;
+            if (areApart(own, i, other, j, reachMm)) continue;
+            if (i.isLeaf() && j.isLeaf()) {
+                testAll(i, j, found);
+            } else if (j.leaves > i.leaves) {
+                left.insert(left.end(), {{i, j.right()}, {i, j.left()}});
+            } else {
+                left.insert(left.end(), {{i.right(), j}, {i.left(), j}});
             }
         }
     }
@@ -479,6 +578,7 @@ struct TriangleGroups::Search {
         } else if (!areApart(own, own.root(), other, other.root(), reachMm)) {
             visit(own.root(), {other.root()}, found);
         }
+        decidePutOff(found);
         return {std::move(found.pairs), trianglesOf(own, isUndecided),
                 isOne() ? std::vector<std::uint32_t>{} : trianglesOf(other, isOtherUndecided),
                 found.tests};

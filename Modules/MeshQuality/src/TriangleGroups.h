@@ -37,6 +37,8 @@ public:
     struct Budget {
         std::int64_t groups;  ///< that are near one group of 4 triangles, or one that holds it
         std::int64_t pairs;   ///< found, of one group of 4 triangles with others
+        std::int64_t putOff;  ///< pairs of groups beyond `groups` that are looked at in the end
+        std::int64_t tests;   ///< of two groups then
 
         /// In proportion to the triangles, and more where they are few.
         static Budget of(std::int64_t triangles);

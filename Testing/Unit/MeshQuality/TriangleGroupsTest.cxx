@@ -262,7 +262,7 @@ TEST(CrossingPairs, AreToldInWords) {
 }
 
 TEST(Nesting, OfBipyramidsInEachOtherIsDecided) {
-    const TriangleMesh outer = bipyramid(2000);
+    const TriangleMesh outer = bipyramid(20000);
     TriangleMesh inner = inAnyOrder(outer);
     for (Vec3& p : inner.points) p = 0.9 * p + turned({2, 1, 0});
     const NestingReport report = checkNesting(inner, outer);
