@@ -14,6 +14,7 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
+#include "adaptiso/MeshQuality/NearestPlaces.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
@@ -435,12 +436,12 @@ private:
         const Asked &inner = surfaces_[n], &outer = surfaces_[n + 1];
         const AabbTree tree(outer.mesh);
         std::vector<double> gap(inner.used.size());
-        parallelForPieces(std::ssize(gap), 256, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t k = begin; k < end; ++k) {
-                gap[k] = std::sqrt(
-                    tree.closestPoint(inner.mesh.points[inner.used[k]]).squaredDistanceMm2);
-            }
-        });
+        findNearestPlaces(
+            outer.mesh, tree, std::ssize(gap),
+            [&](std::int64_t k) { return inner.mesh.points[inner.used[k]]; },
+            [&](std::int64_t k, const ClosestPoint& nearest) {
+                gap[k] = std::sqrt(nearest.squaredDistanceMm2);
+            });
         const bool hasAllLayers = surfaces_.size() == innerSkull_ + 3;
         if (options_.areHeadLayers && hasAllLayers && n >= innerSkull_) askThickness(n, gap);
 

@@ -21,7 +21,7 @@ namespace adaptiso {
 namespace {
 
 constexpr std::int64_t kGrain = 4096;
-constexpr std::int64_t kMostRayTests = 1 << 24;  // for each kGrain vertices
+constexpr std::int64_t kMostRayTests = 1 << 24, kLeastRayTests = 1 << 21;
 
 /// The mesh with each triangle once, where all of it is there twice and so has no inside by the
 /// even-odd rule; none where it is not.
@@ -173,12 +173,14 @@ std::vector<VertexId> findSpokesmen(const Surface& surface, const Surface& other
 std::vector<Side> findSides(const Surface& surface, const Surface& other,
                             const std::vector<VertexId>& spokesmen, std::atomic<bool>& isComplete) {
     const std::int64_t count = std::ssize(spokesmen);
+    const std::int64_t most =  // for each kGrain vertices
+        std::max(kLeastRayTests, kMostRayTests / (count / kGrain + 1));
     std::vector<Side> sides(spokesmen.size(), Side::Outside);
     parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
         std::int64_t tests = 0;
         for (VertexId v = begin; v < end; ++v) {
             if (spokesmen[v] != v) continue;
-            if (tests > kMostRayTests) {
+            if (tests > most) {
                 isComplete = false;
                 return;
             }
