@@ -164,12 +164,19 @@ std::vector<Check> makeChecks(const CompareRun& run) {
 }
 
 void warnOfRough(CompareRun& run) {
-    const std::int64_t rough = run.distances.combined.rough;
-    if (rough == 0) return;
-    run.warnings.push_back(
-        {"distance-rough", formatCount(rough) + (rough == 1 ? " point lies" : " points lie") +
-                               " about as far from more than 500 triangles each: distances there "
-                               "may be a hundredth too large"});
+    const auto warn = [&](std::int64_t points, const char* why) {
+        if (points == 0) return;
+        run.warnings.push_back(
+            {"distance-rough",
+             formatCount(points) + (points == 1 ? " point lies" : " points lie") + why});
+    };
+    const RoughDistances& rough = run.distances.combined.rough;
+    warn(rough.rough,
+         " about as far from more than 100 triangles each: distances there may be a hundredth too "
+         "large");
+    warn(rough.open,
+         " near more than 500 triangles each: distances there are those of the nearest of 500, and "
+         "may be too large");
 }
 
 /// Limits that fit no surface of this size. \param diagonalMm  of the smaller surface

@@ -142,7 +142,7 @@ void AabbTree::improve(ClosestPoint& best, const Vec3& p, std::int64_t triangle)
 
 ClosestPoint AabbTree::closestPoint(const Vec3& p, std::int64_t hint, SearchEffort* effort) const {
     ClosestPoint best;
-    if (effort != nullptr) effort->isRough = false;
+    if (effort != nullptr) effort->begin();
     if (order_.empty()) return best;
     if (hint >= 0) improve(best, p, hint);
     struct Candidate {
@@ -155,11 +155,13 @@ ClosestPoint AabbTree::closestPoint(const Vec3& p, std::int64_t hint, SearchEffo
     while (depth > 0) {
         const Candidate at = stack[--depth];
         if (at.squaredDistanceMm2 >= best.squaredDistanceMm2) continue;
-        if (effort != nullptr && effort->triangles <= 0 &&
-            at.squaredDistanceMm2 >=
+        if (effort != nullptr && effort->isUsedUp()) {
+            if (effort->ends()) break;
+            if (at.squaredDistanceMm2 >=
                 SearchEffort::kRough * SearchEffort::kRough * best.squaredDistanceMm2) {
-            effort->isRough = true;
-            continue;
+                effort->isRough = true;
+                continue;
+            }
         }
         if (at.subtree.isLeaf()) {
             if (effort != nullptr) effort->triangles -= kLeafTriangles;

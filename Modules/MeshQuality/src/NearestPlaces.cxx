@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "NumberedTriangles.h"
@@ -11,13 +10,15 @@
 
 namespace adaptiso {
 
-std::int64_t findNearestPlaces(const TriangleMesh& mesh, const AabbTree& tree, std::int64_t count,
-                               const std::function<std::optional<Vec3>(std::int64_t)>& pointOf,
-                               const std::function<void(std::int64_t, const ClosestPoint&)>& take,
-                               bool areNear) {
+RoughDistances findNearestPlaces(const TriangleMesh& mesh, const AabbTree& tree, std::int64_t count,
+                                 const std::function<std::optional<Vec3>(std::int64_t)>& pointOf,
+                                 const std::function<void(std::int64_t, const ClosestPoint&)>& take,
+                                 bool areNear) {
     constexpr std::int64_t kPiece = 4096;
-    constexpr std::int64_t kMost = 256 * kPiece;  // triangles to look at, for a piece, each way
-    constexpr std::int64_t kOfEach = 512;         // for a point where these are used up
+    constexpr std::int64_t kMost = 256 * kPiece;  // triangles to look at by the tree, for a piece
+    constexpr std::int64_t kFirst = 64, kMostOfFirst = 4096 * kFirst;  // and for its first points
+    constexpr std::int64_t kMostByGroups = 64 * kPiece;
+    constexpr std::int64_t kOfEach = 128;  // for a point where these are used up
     const std::int64_t pieces = (count + kPiece - 1) / kPiece;
     std::vector<std::uint8_t> isHard(static_cast<std::size_t>(pieces));
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
@@ -29,7 +30,8 @@ std::int64_t findNearestPlaces(const TriangleMesh& mesh, const AabbTree& tree, s
             const ClosestPoint nearest = tree.closestPoint(*point, hint, &effort);
             if (areNear) hint = nearest.triangle;
             take(n, nearest);
-            if (effort.triangles > 0) continue;
+            const bool isCostly = n < begin + kFirst && kMost - effort.triangles > kMostOfFirst;
+            if (!effort.isUsedUp() && !isCostly) continue;
             isHard[begin / kPiece] = 1;
             return;
         }
@@ -38,13 +40,13 @@ std::int64_t findNearestPlaces(const TriangleMesh& mesh, const AabbTree& tree, s
     for (std::int64_t n = 0; n < pieces; ++n) {
         if (isHard[n] != 0) hard.push_back(n);
     }
-    if (hard.empty() || mesh.points.size() > std::numeric_limits<std::uint32_t>::max()) return 0;
+    if (hard.empty() || mesh.points.size() > std::numeric_limits<std::uint32_t>::max()) return {};
     const NumberedTriangles numbered(mesh);
     const TriangleGroups groups(numbered.view(), false);
     const TriangleGroups::Boxes boxes(groups);
-    std::vector<std::int64_t> rough(hard.size());
+    std::vector<RoughDistances> rough(hard.size());
     parallelForPieces(std::ssize(hard), 1, [&](std::int64_t h, std::int64_t) {
-        SearchEffort effort{kMost};
+        SearchEffort effort{kMostByGroups};
         std::int64_t hint = -1;
         const std::int64_t begin = hard[h] * kPiece, end = std::min(count, begin + kPiece);
         for (std::int64_t n = begin; n < end; ++n) {
@@ -62,10 +64,12 @@ std::int64_t findNearestPlaces(const TriangleMesh& mesh, const AabbTree& tree, s
             hint = nearest.triangle;
             nearest.triangle = numbered.numbers[hint];
             take(n, nearest);
-            rough[h] += effort.isRough ? 1 : 0;
+            rough[h] += {effort.isRough && !effort.isOpen, effort.isOpen};
         }
     });
-    return std::accumulate(rough.begin(), rough.end(), std::int64_t{0});
+    RoughDistances sum;
+    for (const RoughDistances& some : rough) sum += some;
+    return sum;
 }
 
 }  // namespace adaptiso

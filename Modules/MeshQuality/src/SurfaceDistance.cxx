@@ -107,7 +107,7 @@ struct Measurements {
     std::vector<double> distancesMm;
     std::vector<double> deviationsDeg;
     Farthest farthest;
-    std::int64_t rough = 0;  ///< distances that may be a hundredth too large
+    RoughDistances rough;
 };
 
 Vec3 triangleNormal(const TriangleMesh& mesh, std::int64_t triangle) {
@@ -137,7 +137,7 @@ void measureSamples(const TriangleMesh& from, const TriangleMesh& to, const Aabb
 
 /// The vertex farthest away; the first of several.
 Farthest farthestVertex(const TriangleMesh& from, const TriangleMesh& to, const AabbTree& tree,
-                        std::int64_t& rough) {
+                        RoughDistances& rough) {
     std::vector<bool> isUsed(from.points.size());
     for (const Triangle& t : from.triangles) {
         for (const VertexId v : t) isUsed[v] = true;

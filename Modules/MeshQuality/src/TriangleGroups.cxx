@@ -678,7 +678,7 @@ double TriangleGroups::Boxes::squaredDistance(const Vec3& p, const HalvedLeaves&
 ClosestPoint TriangleGroups::Boxes::closestPoint(const Vec3& p, const ClosestPoint& first,
                                                  SearchEffort& effort) const {
     ClosestPoint best = first;
-    effort.isRough = false;
+    effort.begin();
     if (boxes_.empty()) return best;
     constexpr double kRough = SearchEffort::kRough * SearchEffort::kRough;
     struct Candidate {
@@ -691,9 +691,12 @@ ClosestPoint TriangleGroups::Boxes::closestPoint(const Vec3& p, const ClosestPoi
     while (depth > 0) {
         const Candidate at = stack[--depth];
         if (at.squared >= best.squaredDistanceMm2) continue;
-        if (effort.triangles <= 0 && at.squared >= kRough * best.squaredDistanceMm2) {
-            effort.isRough = true;
-            continue;
+        if (effort.isUsedUp()) {
+            if (effort.ends()) break;
+            if (at.squared >= kRough * best.squaredDistanceMm2) {
+                effort.isRough = true;
+                continue;
+            }
         }
         if (at.group.isLeaf()) {
             effort.triangles -= kLeafTriangles;

@@ -304,12 +304,13 @@ TEST(NearestPlaces, AreThoseOfTheTreeWhereNeedlesMeet) {
     std::vector<Vec3> points;
     for (int n = 0; n < 2000; ++n) points.push_back(turned(onCircle(n * 0.618, 5 + n * 0.02, 3)));
     std::vector<double> squared(points.size());
-    const std::int64_t rough = findNearestPlaces(
+    const RoughDistances rough = findNearestPlaces(
         mesh, tree, std::ssize(points), [&](std::int64_t n) { return points[n]; },
         [&](std::int64_t n, const ClosestPoint& nearest) {
             squared[n] = nearest.squaredDistanceMm2;
         });
-    EXPECT_EQ(rough, 0);
+    EXPECT_EQ(rough.rough, 0);
+    EXPECT_EQ(rough.open, 0);
     for (std::size_t n = 0; n < points.size(); n += 50) {
         EXPECT_NEAR(std::sqrt(squared[n]),
                     std::sqrt(tree.closestPoint(points[n]).squaredDistanceMm2), 1e-9);
@@ -324,16 +325,39 @@ TEST(NearestPlaces, OfPointsAtTheCentreOfASphereAreWithinAHundredth) {
     std::vector<Vec3> points;
     for (int n = 0; n < 4000; ++n) points.push_back({place(random), place(random), place(random)});
     std::vector<double> squared(points.size());
-    const std::int64_t rough = findNearestPlaces(
+    const RoughDistances rough = findNearestPlaces(
         mesh, tree, std::ssize(points), [&](std::int64_t n) { return points[n]; },
         [&](std::int64_t n, const ClosestPoint& nearest) {
             squared[n] = nearest.squaredDistanceMm2;
         });
-    EXPECT_GT(rough, 3000);
+    EXPECT_GT(rough.rough, 3000);
+    EXPECT_EQ(rough.open, 0);
     for (std::size_t n = 0; n < points.size(); n += 40) {
         const double exact = std::sqrt(tree.closestPoint(points[n]).squaredDistanceMm2);
         EXPECT_GE(std::sqrt(squared[n]), exact);
         EXPECT_LE(std::sqrt(squared[n]), exact / SearchEffort::kRough);
+    }
+}
+
+// No box tells triangles apart: each search ends with its budget.
+TEST(NearestPlaces, OfTrianglesThatAllCrossAreThoseOfSomeAndCounted) {
+    constexpr int kCount = 6000;
+    const TriangleMesh mesh = crossingAtOnePoint(kCount);
+    const AabbTree tree(mesh);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> place(-1, 1);
+    std::vector<Vec3> points;
+    for (int n = 0; n < 4000; ++n) points.push_back({place(random), place(random), place(random)});
+    std::vector<double> squared(points.size());
+    const RoughDistances rough = findNearestPlaces(
+        mesh, tree, std::ssize(points), [&](std::int64_t n) { return points[n]; },
+        [&](std::int64_t n, const ClosestPoint& nearest) {
+            squared[n] = nearest.squaredDistanceMm2;
+        });
+    EXPECT_GT(rough.open, 3000);
+    for (std::size_t n = 0; n < points.size(); n += 40) {
+        const double exact = std::sqrt(tree.closestPoint(points[n]).squaredDistanceMm2);
+        EXPECT_GE(std::sqrt(squared[n]), exact);
     }
 }
 

@@ -30,9 +30,21 @@ struct ClosestPoint {
 struct SearchEffort {
     std::int64_t triangles;  ///< left to look at
     bool isRough = false;    ///< they were used up: the last distance may be a hundredth too large
+    bool isOpen = false;     ///< twice as many were: it is of the nearest triangle looked at
 
     /// Of boxes that are nearer than the best by less, none is opened once the effort is used up.
     static constexpr double kRough = 0.99;
+    /// More triangles that are looked at to know the distance to a hundredth. Where boxes do not
+    /// tell triangles apart, as where all cross each other, these are not enough.
+    static constexpr std::int64_t kMore = 384;
+
+    void begin() { isRough = isOpen = false; }
+    bool isUsedUp() const { return triangles <= 0; }
+    /// Nothing more is looked at.
+    bool ends() {
+        isOpen = isOpen || triangles <= -kMore;
+        return isOpen;
+    }
 };
 
 /// A binary tree of axis-aligned boxes over the triangles of a mesh: finds the nearest triangle to

@@ -8,6 +8,7 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshQuality/NearestPlaces.h"
 
 namespace adaptiso {
 
@@ -25,10 +26,9 @@ struct DistanceStatistics {
     double rmsMm = 0;
     double p95Mm = 0;
     double p99Mm = 0;
-    double maxMm = 0;  ///< of samples and vertices: never more than the truth, but for `rough`
-    std::int64_t rough = 0;             ///< points whose distance may be a hundredth too large: see
-                                        ///< findNearestPlaces()
-    Vec3 maxPointMm;                    ///< where, on the surface that is measured from
+    double maxMm = 0;      ///< of samples and vertices: never more than the truth, but for `rough`
+    RoughDistances rough;  ///< points whose distance may be too large
+    Vec3 maxPointMm;       ///< where, on the surface that is measured from
     double meanNormalDeviationDeg = 0;  ///< angle between the two surfaces' triangle normals
     double p95NormalDeviationDeg = 0;
 };
