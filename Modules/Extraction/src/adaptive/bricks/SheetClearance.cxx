@@ -45,16 +45,24 @@ public:
     float nearestOther(const Vec3& point, const Vec3& normal, float most) const {
         const Place own = placeOf(point, normal);
         const Index3 cube = cubeAt(point);
-        const auto lookAt = [&](std::span<const Place> others) {
-            for (const Place& other : others) {
-                float squared = 0, cosine = 0;
-                for (int a = 0; a < 3; ++a) {
-                    const float d = other.point[a] - own.point[a];
-                    squared += d * d;
-                    cosine += other.normal[a] * own.normal[a];
-                }
-                most = cosine < kOtherSheetCosine ? std::min(most, squared) : most;
+        const auto lookAtOne = [&](const Place& other) {
+            float squared = 0, cosine = 0;
+            for (int a = 0; a < 3; ++a) {
+                const float d = other.point[a] - own.point[a];
+                squared += d * d;
+                cosine += other.normal[a] * own.normal[a];
             }
+            most = cosine < kOtherSheetCosine ? std::min(most, squared) : most;
+        };
+        const auto lookAt = [&](std::span<const Place> others) {
+            // thousands, as where all triangles share a vertex: some of them tell as much
+            constexpr std::size_t kMany = 1024;
+            if (others.size() <= kMany) {
+                for (const Place& other : others) lookAtOne(other);
+                return;
+            }
+            const std::size_t step = others.size() / kMany + 1;
+            for (std::size_t n = 0; n < others.size(); n += step) lookAtOne(others[n]);
         };
         for (int n = 0; n < 9; ++n) {
             const std::size_t begin =
