@@ -152,16 +152,6 @@ void declareCoordinates(const OptionGroup& group, const std::function<void(Coord
     group.value("--coordinates", choiceName(words), choose, help);
 }
 
-std::string knownExtensions() {
-    std::string list;
-    for (const MeshFormat& format : meshFormats()) {
-        for (const std::string_view extension : format.extensions) {
-            list.append(list.empty() ? "" : " ").append(extension);
-        }
-    }
-    return list;
-}
-
 void checkInputCoordinates(const std::vector<CoordinateFrame>& stated, std::size_t surfaces) {
     if (stated.size() <= 1 || stated.size() == surfaces) return;
     throw UsageError("--input-coordinates: is given " + std::to_string(stated.size()) +
@@ -204,7 +194,7 @@ const MeshFormat& meshFormatOf(const std::filesystem::path& file) {
 }
 
 CoordinateFrame outputFrame(std::optional<CoordinateFrame> wanted, const MeshFormat& format) {
-    const CoordinateFrame frame = wanted.value_or(defaultFrame(format));
+    const CoordinateFrame frame = wanted.value_or(format.defaultFrame);
     if (frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
         throw UsageError("--coordinates voxel: " + std::string(format.name) +
                          " holds points in mm only");

@@ -36,9 +36,6 @@ void declareCoordinates(const OptionGroup& group, Target& target, const std::str
         help, words);
 }
 
-/// The extensions of all mesh formats: ".vtp .vtk ...".
-std::string knownExtensions();
-
 /// \throws UsageError  frames that are neither one for all surfaces nor one for each
 void checkInputCoordinates(const std::vector<CoordinateFrame>& stated, std::size_t surfaces);
 

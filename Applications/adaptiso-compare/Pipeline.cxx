@@ -33,7 +33,7 @@ void checkOutputs(const CompareOptions& options) {
     const std::array inputs{options.a, options.b, options.volume};
     OutputPlan plan(inputs);
     if (!options.colored.empty()) {
-        if (meshFormatOf(options.colored).id != MeshFormatId::VtkXml) {
+        if (meshFormatOf(options.colored).extensions.front() != ".vtp") {
             throw UsageError("--colored " + options.colored.string() + ": must be a .vtp file");
         }
         plan.add("--colored", options.colored);

@@ -10,6 +10,7 @@
 #include "Common/UsageWords.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso::labels {
@@ -21,23 +22,23 @@ constexpr const char* kWalls = "Walls";
 constexpr const char* kTetrahedra = "Tetrahedra";
 constexpr const char* kOutput = "Output";
 
-std::vector<std::string> knownExtensions() {
-    std::vector<std::string> known;
+/// The extensions of the formats, all or one of each, without the dot.
+std::vector<std::string> formatWords(bool areAll) {
+    std::vector<std::string> words;
     for (const MeshFormat& format : meshFormats()) {
-        for (const std::string_view extension : format.extensions) {
-            known.emplace_back(extension.substr(1));
+        for (const auto extension :
+             format.extensions.first(areAll ? format.extensions.size() : 1)) {
+            words.emplace_back(extension.substr(1));
         }
     }
-    return known;
+    return words;
 }
 
 /// "stl" or ".stl" as ".stl". \throws UsageError
 std::string parseFormat(std::string text) {
-    std::ranges::transform(text, text.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
+    text = lowerCase(text);
     if (text.starts_with('.')) text.erase(0, 1);
-    const std::vector<std::string> known = knownExtensions();
+    const std::vector<std::string> known = formatWords(true);
     return "." + known[parseChoice("--format", text, known)];
 }
 
@@ -150,7 +151,7 @@ void declareOutput(CLI::App& app, LabelsOptions& options) {
     output.flag("--force", options.mayReplace,
                 "Replace a folder that this program wrote; one that holds other files is not");
     output.value(
-        "--format", choiceName({"vtp", "vtk", "ply", "stl", "obj", "off", "gii", "tri", "surf"}),
+        "--format", choiceName(formatWords(false)),
         [&options](const std::string& text) { options.format = parseFormat(text); },
         "The format of the regions' files (default: vtp)");
     output.value(

@@ -181,7 +181,7 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
         "its name stands for the isovalue, {isolabel} for the same in letters and digits "
         "(411p5, m300); without them, several surfaces get -iso<V> before the extension. The "
         "format follows from the extension: " +
-            knownExtensions());
+            meshExtensions());
     declareCoordinates(output, options.frame,
                        "The points' frame: scanner RAS mm (default), scanner LPS mm, "
                        "FreeSurfer's surface RAS mm (default for its formats), or voxel "

@@ -28,7 +28,7 @@ std::size_t twoPartEnding(const std::string& name) {
 
 bool isFreeSurfer(const fs::path& path) {
     try {
-        return findMeshFormat(path).id == MeshFormatId::FreeSurfer;
+        return findMeshFormat(path).defaultFrame == CoordinateFrame::TkRas;
     } catch (const InvalidInput&) {
         return false;
     }
@@ -60,7 +60,7 @@ FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wa
     change.isSaid = input.frame || wanted;
     const CoordinateFrame from = input.frame.value_or(CoordinateFrame::Ras);
     change.frame = wanted.value_or(from);
-    if (!input.frame && (wanted || output.id == MeshFormatId::FreeSurfer)) {
+    if (!input.frame && (wanted || output.defaultFrame == CoordinateFrame::TkRas)) {
         const char* const what = wanted ? "--coordinates" : "FreeSurfer's format";
         throw InvalidInput("does not say its coordinate frame, which " + std::string(what) +
                            " needs" + kStateIt);

@@ -98,7 +98,7 @@ void declareOutput(CLI::App& app, SimplifyCommand& command) {
     output.text("-o,--output", "OUT", command.output,
                 "The file to write, or a folder for files of the inputs' names. {name} in its "
                 "name stands for the input's. The format follows from the extension: " +
-                    knownExtensions());
+                    meshExtensions());
     declareCoordinates(output, command.frame,
                        "The points' frame in the file: scanner RAS mm, scanner LPS mm, "
                        "FreeSurfer's surface RAS mm, or voxel indices (default: as the "

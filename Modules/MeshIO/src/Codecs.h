@@ -21,34 +21,27 @@ struct MeshRecord {
     const MeshWriteOptions& options;
 };
 
-// One pair a format, each in its own .cxx. Decoders throw FileError without the file's name; what
-// they return is checked by decodeMesh() (indices, finite numbers, normals one per point), which
-// also scales normals to unit length.
-void encodeVtkXml(const MeshRecord& record, ByteSink& sink);
-void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink);
-void encodePly(const MeshRecord& record, ByteSink& sink);
-void encodeStl(const MeshRecord& record, ByteSink& sink);
-void encodeObj(const MeshRecord& record, ByteSink& sink);
-void encodeOff(const MeshRecord& record, ByteSink& sink);
-void encodeGifti(const MeshRecord& record, ByteSink& sink);
-void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink);
-void encodeOpenMeeg(const MeshRecord& record, ByteSink& sink);
+/// How a format is recognised, read and written: one at the end of each format's .cxx, all in the
+/// table of Formats.cxx.
+struct Codec {
+    /// By a file's first kMeshHeadBytes bytes, all of a shorter file; unpacked.
+    bool (*recognizes)(std::string_view head, std::uint64_t byteCount);
+    /// Throws FileError without the file's name. What it returns is checked by decodeMesh()
+    /// (indices, finite numbers, normals one per point), which also scales normals to unit length.
+    MeshFile (*decode)(std::string_view bytes, const MeshReadOptions& options);
+    void (*encode)(const MeshRecord& record, ByteSink& sink);
+    /// Else any bytes may begin it, also those of a byte order mark; such formats are looked for
+    /// first.
+    bool isText = true;
+};
 
-MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodeVtkLegacy(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodeStl(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodeObj(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options);
-MeshFile decodeOpenMeeg(std::string_view bytes);
+/// The first line that is neither empty nor a comment.
+std::string_view firstLine(std::string_view text);
+/// True for words of digits and what else numbers are written with.
+bool isNumber(std::string_view word);
+/// FF FF FF begins both FreeSurfer's surfaces of quadrangles and its values at points (curv).
+bool isCurv(std::string_view head, std::uint64_t byteCount);
 
-/// FIFF is read alone. Its points are in the frame of FreeSurfer's surfaces, here in mm.
-const MeshFormat& fiffFormat();
-/// \param surface  its name ("outer_skin"); empty: the file holds one
-MeshFile decodeFiff(std::string_view bytes, std::string_view surface,
-                    const MeshReadOptions& options);
 /// "model-bem.fif" and "outer_skin" of "model-bem.fif:outer_skin"; else the path and an empty text.
 std::pair<std::filesystem::path, std::string> fiffPart(const std::filesystem::path& path);
 

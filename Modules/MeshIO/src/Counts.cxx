@@ -5,7 +5,6 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
-#include "Fiff.h"
 #include "adaptiso/Core/Surplus.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
@@ -39,7 +38,6 @@ void requireNoSecondFile(const Counted& counted, std::string_view rest) {
     constexpr std::size_t kLeast = 12;  // fewer may be chance
     if (rest.size() < kLeast) return;
     const MeshFormat* format = recognizeMeshFormat(rest.substr(0, kMeshHeadBytes), rest.size());
-    if (format == nullptr && rest.starts_with(fiff::kMagic)) format = &fiffFormat();
     if (format != nullptr) refuseSecondFile(counted, format->name);
 }
 

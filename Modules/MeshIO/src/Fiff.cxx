@@ -458,23 +458,6 @@ std::vector<FiffSurface> insideOut(std::vector<FiffSurface> surfaces) {
 
 namespace meshio {
 
-const MeshFormat& fiffFormat() {
-    static constexpr std::string_view kExtension[] = {".fif"};
-    static constexpr MeshFormat kFormat{MeshFormatId::FreeSurfer,
-                                        "FIFF (MNE)",
-                                        kExtension,
-                                        CoordinatePrecision::Float32,
-                                        false,
-                                        true,
-                                        false,
-                                        false,
-                                        false,
-                                        false,
-                                        true,
-                                        std::numeric_limits<std::int32_t>::max()};
-    return kFormat;
-}
-
 std::pair<std::filesystem::path, std::string> fiffPart(const std::filesystem::path& path) {
     const std::string text = path.string();
     const std::size_t colon = text.rfind(".fif:");
@@ -483,18 +466,24 @@ std::pair<std::filesystem::path, std::string> fiffPart(const std::filesystem::pa
     return {text.substr(0, colon + 4), text.substr(colon + 5)};
 }
 
-MeshFile decodeFiff(std::string_view bytes, std::string_view surface,
-                    const MeshReadOptions& options) {
+namespace {
+
+bool isFiff(std::string_view head, std::uint64_t /*byteCount*/) {
+    return head.starts_with(fiff::kMagic);
+}
+
+MeshFile decodeFiff(std::string_view bytes, const MeshReadOptions& options) {
     constexpr double kMmPerM = 1000;
     const fiff::Content content = fiff::decode(bytes);
     std::vector<FiffSurface> surfaces = insideOut(surfacesIn(content));
     const std::vector<std::string> names = namesOf(surfaces);
     std::string list;
     for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-    if (!surface.empty()) {
-        const auto at = std::ranges::find(names, surface) - names.begin();
+    if (!options.part.empty()) {
+        const auto at = std::ranges::find(names, options.part) - names.begin();
         if (at == std::ssize(names)) {
-            unsupported("it holds no surface " + printable(surface) + " but " + list, "name one");
+            unsupported("it holds no surface " + printable(options.part) + " but " + list,
+                        "name one");
         }
         surfaces = {surfaces[static_cast<std::size_t>(at)]};
     }
@@ -511,6 +500,10 @@ MeshFile decodeFiff(std::string_view bytes, std::string_view surface,
     file.frame = options.inputCoordinates.value_or(CoordinateFrame::TkRas);
     return file;
 }
+
+}  // namespace
+
+extern const Codec kFiffCodec{isFiff, decodeFiff, nullptr, false};
 
 }  // namespace meshio
 

@@ -1,7 +1,6 @@
 #include "adaptiso/MeshIO/Formats.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -11,8 +10,16 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/TextLines.h"
+#include "adaptiso/MeshIO/Xml.h"
 
 namespace adaptiso {
+namespace meshio {
+
+// each at the end of its own .cxx
+extern const Codec kVtkXmlCodec, kVtkLegacyCodec, kPlyCodec, kStlCodec, kObjCodec, kOffCodec,
+    kGiftiCodec, kFreeSurferCodec, kOpenMeegCodec, kFiffCodec;
+
+}  // namespace meshio
 
 namespace {
 
@@ -24,10 +31,11 @@ constexpr Extensions kStl = {".stl"};
 constexpr Extensions kObj = {".obj"};
 constexpr Extensions kOff = {".off"};
 constexpr Extensions kGifti = {".gii"};
-constexpr Extensions kOpenMeeg = {".tri"};
 constexpr Extensions kFreeSurfer = {".surf",    ".pial",  ".white",    ".inflated",     ".orig",
                                     ".sphere",  ".reg",   ".smoothwm", ".midthickness", ".graymid",
                                     ".qsphere", ".nofix", ".seghead"};
+constexpr Extensions kOpenMeeg = {".tri"};
+constexpr Extensions kFiff = {".fif"};
 
 constexpr std::int64_t kInt32 = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t kInt64 = std::numeric_limits<std::int64_t>::max();
@@ -35,26 +43,36 @@ constexpr std::int64_t kInt64 = std::numeric_limits<std::int64_t>::max();
 constexpr auto F64 = CoordinatePrecision::Float64;
 constexpr auto F32 = CoordinatePrecision::Float32;
 constexpr auto Text = CoordinatePrecision::NineDigits;
+constexpr auto Ras = CoordinateFrame::Ras, TkRas = CoordinateFrame::TkRas;
 constexpr bool yes = true, no = false;
 
 // clang-format off
-constexpr std::array<MeshFormat, 9> kFormats{{
-    //                         name                extensions   digits normals frame voxel geometry arrays colors vertices most
-    {MeshFormatId::VtkXml,     "VTK XML PolyData", kVtkXml,     F64,   yes,    yes,  yes,  no,      yes,    yes,    yes,      kInt64},
-    {MeshFormatId::VtkLegacy,  "VTK legacy",       kVtkLegacy,  F64,   yes,    yes,  yes,  no,      yes,    yes,    yes,      kInt64},
-    {MeshFormatId::Ply,        "PLY (binary)",     kPly,        F64,   yes,    yes,  yes,  no,      yes,    yes,    yes,      kInt32},
-    {MeshFormatId::Stl,        "STL (binary)",     kStl,        F32,   no,     yes,  yes,  no,      no,     no,     no,       kInt32},
-    {MeshFormatId::Obj,        "Wavefront OBJ",    kObj,        Text,  yes,    yes,  yes,  no,      no,     yes,    yes,      kInt64},
-    {MeshFormatId::Off,        "OFF",              kOff,        Text,  no,     yes,  yes,  no,      no,     yes,    yes,      kInt64},
-    {MeshFormatId::Gifti,      "GIFTI",            kGifti,      F32,   no,     yes,  yes,  yes,     no,     no,     yes,      kInt32},
-    {MeshFormatId::FreeSurfer, "FreeSurfer",       kFreeSurfer, F32,   no,     yes,  no,   yes,     no,     no,     yes,      kInt32},
-    {MeshFormatId::OpenMeeg,   "OpenMEEG",         kOpenMeeg,   Text,  yes,    no,   yes,  no,      no,     no,     yes,      kInt32},
-}};
+constexpr MeshFormat kFormats[] = {
+    // name              extensions   codec                   digits used in normals frame voxel geometry arrays colors cells vertices most
+    {"VTK XML PolyData", kVtkXml,     &meshio::kVtkXmlCodec,     F64,  Ras,   yes,    yes,  yes,  no,      yes,    yes,   yes,  yes,      kInt64},
+    {"VTK legacy",       kVtkLegacy,  &meshio::kVtkLegacyCodec,  F64,  Ras,   yes,    yes,  yes,  no,      yes,    yes,   no,   yes,      kInt64},
+    {"PLY (binary)",     kPly,        &meshio::kPlyCodec,        F64,  Ras,   yes,    yes,  yes,  no,      yes,    yes,   no,   yes,      kInt32},
+    {"STL (binary)",     kStl,        &meshio::kStlCodec,        F32,  Ras,   no,     yes,  yes,  no,      no,     no,    no,   no,       kInt32},
+    {"Wavefront OBJ",    kObj,        &meshio::kObjCodec,        Text, Ras,   yes,    yes,  yes,  no,      no,     yes,   no,   yes,      kInt64},
+    {"OFF",              kOff,        &meshio::kOffCodec,        Text, Ras,   no,     yes,  yes,  no,      no,     yes,   no,   yes,      kInt64},
+    {"GIFTI",            kGifti,      &meshio::kGiftiCodec,      F32,  Ras,   no,     yes,  yes,  yes,     no,     no,    no,   yes,      kInt32},
+    {"FreeSurfer",       kFreeSurfer, &meshio::kFreeSurferCodec, F32,  TkRas, no,     yes,  no,   yes,     no,     no,    no,   yes,      kInt32},
+    {"OpenMEEG",         kOpenMeeg,   &meshio::kOpenMeegCodec,   Text, Ras,   yes,    no,   yes,  no,      no,     no,    no,   yes,      kInt32},
+    // read alone
+    {"FIFF (MNE)",       kFiff,       &meshio::kFiffCodec,       F32,  TkRas, no,     yes,  no,   no,      no,     no,    no,   yes,      kInt32},
+};
 // clang-format on
+constexpr std::size_t kReadAlone = 1;
 
-std::string listOfExtensions() {
+}  // namespace
+
+std::span<const MeshFormat> meshFormats() {
+    return std::span(kFormats).first<std::size(kFormats) - kReadAlone>();
+}
+
+std::string meshExtensions() {
     std::string list;
-    for (const MeshFormat& format : kFormats) {
+    for (const MeshFormat& format : meshFormats()) {
         for (const std::string_view extension : format.extensions) {
             list.append(list.empty() ? "" : " ").append(extension);
         }
@@ -62,114 +80,21 @@ std::string listOfExtensions() {
     return list;
 }
 
-}  // namespace
-
-std::span<const MeshFormat> meshFormats() {
-    return kFormats;
-}
-
 const MeshFormat& findMeshFormat(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().string());
-    for (const MeshFormat& format : kFormats) {
+    for (const MeshFormat& format : meshFormats()) {
         if (std::ranges::find(format.extensions, extension) != format.extensions.end()) {
             return format;
         }
     }
     throw InvalidInput(path.string() + ": no surface format has the extension '" + extension +
-                       "', must be one of " + listOfExtensions());
-}
-
-CoordinateFrame defaultFrame(const MeshFormat& format) {
-    return format.id == MeshFormatId::FreeSurfer ? CoordinateFrame::TkRas : CoordinateFrame::Ras;
+                       "', must be one of " + meshExtensions());
 }
 
 namespace {
 
 using namespace std::string_view_literals;
-using meshio::ByteSource;
-
-bool isNumber(std::string_view word) {
-    return !word.empty() && word.find_first_not_of("0123456789+-.eEdD,") == std::string_view::npos;
-}
-
-/// The name of the outermost element; empty if the text is not XML.
-std::string_view xmlRoot(std::string_view text) {
-    text = trimmed(text);
-    while (text.starts_with("<?") || text.starts_with("<!")) {
-        const bool isComment = text.starts_with("<!--");
-        const std::string_view end = text.starts_with("<?") ? "?>"sv : isComment ? "-->"sv : ">"sv;
-        const std::size_t at = text.find(end);
-        if (at == std::string_view::npos) return {};
-        text = trimmed(text.substr(at + end.size()));
-    }
-    if (!text.starts_with('<')) return {};
-    text.remove_prefix(1);
-    return text.substr(0, text.find_first_of(" \t\r\n/>"));
-}
-
-/// The first line that is neither empty nor a comment.
-std::string_view firstLine(std::string_view text) {
-    ByteSource source(text);
-    while (!source.atEnd()) {
-        const std::string_view line = trimmed(source.line());
-        if (!line.empty() && !line.starts_with('#')) return line;
-    }
-    return {};
-}
-
-/// FF FF FF begins both FreeSurfer's surfaces of quadrangles and its values at points (curv).
-bool isCurv(std::string_view head, std::uint64_t byteCount) {
-    constexpr std::uint64_t kHeaderBytes = 15;
-    if (!head.starts_with("\xFF\xFF\xFF") || head.size() < kHeaderBytes) return false;
-    const auto points = meshio::loadAs<std::uint32_t>(head.data() + 3, std::endian::big);
-    const auto columns = meshio::loadAs<std::uint32_t>(head.data() + 11, std::endian::big);
-    return columns == 1 && byteCount == kHeaderBytes + 4 * std::uint64_t{points};
-}
-
-bool isFreeSurfer(std::string_view head, std::uint64_t byteCount) {
-    return head.starts_with("\xFF\xFF\xFE") || head.starts_with("\xFF\xFF\xFD") ||
-           (head.starts_with("\xFF\xFF\xFF") && !isCurv(head, byteCount));
-}
-
-bool isOff(std::string_view head) {
-    const std::string_view line = firstLine(head);
-    const std::string_view word = line.substr(0, line.find_first_of(" \t"));
-    return word.ends_with("OFF") && word.find_first_not_of("STCN4nOF") == std::string_view::npos;
-}
-
-bool isStl(std::string_view head, std::uint64_t byteCount) {
-    constexpr std::uint64_t kHeaderBytes = 84, kTriangleBytes = 50;
-    if (head.size() >= kHeaderBytes) {
-        const auto count = meshio::loadAs<std::uint32_t>(head.data() + 80, std::endian::little);
-        if (count > 0 && byteCount == kHeaderBytes + kTriangleBytes * count) return true;
-    }
-    const std::string text = lowerCase(trimmed(withoutByteOrderMark(head)));
-    return text.starts_with("solid") && text.find("facet") != std::string::npos &&
-           text.find('\0') == std::string::npos;
-}
-
-bool isOpenMeeg(std::string_view head) {
-    ByteSource source(head);
-    const bool hasDash = source.word() == "-";
-    const std::string_view count = source.word();
-    return hasDash && !count.empty() &&
-           count.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-/// Lines of Wavefront's keywords up to a point.
-bool isObj(std::string_view head) {
-    constexpr std::array kOthers{"mtllib"sv, "usemtl"sv, "o"sv,  "g"sv,
-                                 "s"sv,      "vt"sv,     "vn"sv, "vp"sv};
-    ByteSource source(head);
-    while (!source.atEnd()) {
-        ByteSource line(source.line());
-        const std::string_view word = line.word();
-        if (word.empty() || word.starts_with('#') || std::ranges::count(kOthers, word)) continue;
-        return word == "v" && isNumber(line.word()) && isNumber(line.word()) &&
-               isNumber(line.word());
-    }
-    return false;
-}
+using meshio::ByteSource, meshio::firstLine, meshio::isNumber;
 
 struct Other {
     std::string_view begin;  ///< how the file, or its first line of text, begins
@@ -243,7 +168,7 @@ std::optional<Other> otherSurface(std::string_view head, std::uint64_t byteCount
     if (isDicom(head) || isNifti(head) || isMgh(head)) {
         return Other{{}, "this is an image, not a surface", kImage};
     }
-    if (isCurv(head, byteCount)) {
+    if (meshio::isCurv(head, byteCount)) {
         return Other{{},
                      "holds FreeSurfer's values at points (curv), no surface",
                      "give the surface they belong to"};
@@ -256,7 +181,7 @@ std::optional<Other> otherSurface(std::string_view head, std::uint64_t byteCount
     if (head.starts_with("#!ascii"sv)) {
         return Other{{}, "is FreeSurfer's text (.asc)", "convert it with mris_convert"};
     }
-    const std::string_view root = xmlRoot(head);
+    const std::string_view root = meshio::xmlRoot(head);
     for (const std::string_view scene : {"COLLADA"sv, "X3D"sv, "amf"sv, "AMF"sv}) {
         if (root == scene) return Other{{}, "is an XML scene of another format", kMeshLab};
     }
@@ -267,33 +192,36 @@ std::optional<Other> otherSurface(std::string_view head, std::uint64_t byteCount
     return {};
 }
 
-const MeshFormat* formatOf(MeshFormatId id) {
-    const auto formats = meshFormats();
-    return &*std::ranges::find(formats, id, &MeshFormat::id);
-}
-
 }  // namespace
 
 const MeshFormat* recognizeMeshFormat(std::string_view head, std::uint64_t byteCount) {
-    if (isFreeSurfer(head, byteCount)) return formatOf(MeshFormatId::FreeSurfer);
     if (isDicom(head)) return nullptr;
-    if (isStl(head, byteCount)) return formatOf(MeshFormatId::Stl);
-    head = withoutByteOrderMark(head);
-    const std::string_view text = trimmed(head);
-    if (text.starts_with("# vtk DataFile")) return formatOf(MeshFormatId::VtkLegacy);
-    if (lowerCase(text.substr(0, text.find_first_of(" \t\r\n"))) == "ply") {
-        return formatOf(MeshFormatId::Ply);
+    const std::string_view text = withoutByteOrderMark(head);
+    for (const bool isText : {false, true}) {
+        for (const MeshFormat& format : kFormats) {
+            if (format.codec->isText == isText &&
+                format.codec->recognizes(isText ? text : head, byteCount)) {
+                return &format;
+            }
+        }
     }
-    const std::string_view root = xmlRoot(head);
-    if (root == "VTKFile") return formatOf(MeshFormatId::VtkXml);
-    if (root == "GIFTI") return formatOf(MeshFormatId::Gifti);
-    if (isOff(head)) return formatOf(MeshFormatId::Off);
-    if (isOpenMeeg(head)) return formatOf(MeshFormatId::OpenMeeg);
-    if (isObj(head)) return formatOf(MeshFormatId::Obj);
     return nullptr;
 }
 
 namespace meshio {
+
+bool isNumber(std::string_view word) {
+    return !word.empty() && word.find_first_not_of("0123456789+-.eEdD,") == std::string_view::npos;
+}
+
+std::string_view firstLine(std::string_view text) {
+    ByteSource source(text);
+    while (!source.atEnd()) {
+        const std::string_view line = trimmed(source.line());
+        if (!line.empty() && !line.starts_with('#')) return line;
+    }
+    return {};
+}
 
 void refuseOtherContent(std::string_view head, std::uint64_t byteCount,
                         const std::filesystem::path& path, bool isInflated) {

@@ -150,8 +150,6 @@ Footer decodeFooter(ByteSource& source) {
     return footer;
 }
 
-}  // namespace
-
 void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     const MeshWriteOptions& options = record.options;
@@ -206,5 +204,22 @@ MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options
     if (file.frame == CoordinateFrame::TkRas) file.volume = footer.volume;
     return file;
 }
+
+bool isFreeSurfer(std::string_view head, std::uint64_t byteCount) {
+    return head.starts_with("\xFF\xFF\xFE") || head.starts_with("\xFF\xFF\xFD") ||
+           (head.starts_with("\xFF\xFF\xFF") && !isCurv(head, byteCount));
+}
+
+}  // namespace
+
+bool isCurv(std::string_view head, std::uint64_t byteCount) {
+    constexpr std::uint64_t kHeaderBytes = 15;
+    if (!head.starts_with("\xFF\xFF\xFF") || head.size() < kHeaderBytes) return false;
+    const auto points = loadAs<std::uint32_t>(head.data() + 3, std::endian::big);
+    const auto columns = loadAs<std::uint32_t>(head.data() + 11, std::endian::big);
+    return columns == 1 && byteCount == kHeaderBytes + 4 * std::uint64_t{points};
+}
+
+extern const Codec kFreeSurferCodec{isFreeSurfer, decodeFreeSurfer, encodeFreeSurfer, false};
 
 }  // namespace adaptiso::meshio

@@ -250,8 +250,6 @@ void requireNoMoreExternal(const GiftiSurface& found, std::size_t coordinates, s
     check(found.triangles, "triangles", corners, found.points);
 }
 
-}  // namespace
-
 void encodeGifti(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     sink << kGiftiHead << "<GIFTI Version=\"1.0\" NumberOfDataArrays=\"2\">\n";
@@ -324,5 +322,13 @@ MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options) {
     file.warnings = std::move(unpacking.warnings);
     return file;
 }
+
+bool isGifti(std::string_view head, std::uint64_t /*byteCount*/) {
+    return xmlRoot(head) == "GIFTI";
+}
+
+}  // namespace
+
+extern const Codec kGiftiCodec{isGifti, decodeGifti, encodeGifti};
 
 }  // namespace adaptiso::meshio

@@ -7,7 +7,6 @@
 
 #include "Bytes.h"
 #include "Codecs.h"
-#include "Fiff.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ForeignContent.h"
 #include "adaptiso/Core/Surplus.h"
@@ -18,45 +17,6 @@
 
 namespace adaptiso {
 namespace {
-
-using Encoder = void (*)(const meshio::MeshRecord&, ByteSink&);
-using Decoder = MeshFile (*)(std::string_view, const MeshReadOptions&);
-
-struct Codec {
-    Encoder encode;
-    Decoder decode;
-};
-
-/// For a format that cannot say a frame.
-MeshFile decodeOpenMeeg(std::string_view bytes, const MeshReadOptions& options) {
-    MeshFile file = meshio::decodeOpenMeeg(bytes);
-    file.frame = options.inputCoordinates;
-    return file;
-}
-
-Codec codecOf(MeshFormatId id) {
-    switch (id) {
-        case MeshFormatId::VtkXml:
-            return {meshio::encodeVtkXml, meshio::decodeVtkXml};
-        case MeshFormatId::VtkLegacy:
-            return {meshio::encodeVtkLegacy, meshio::decodeVtkLegacy};
-        case MeshFormatId::Ply:
-            return {meshio::encodePly, meshio::decodePly};
-        case MeshFormatId::Stl:
-            return {meshio::encodeStl, meshio::decodeStl};
-        case MeshFormatId::Obj:
-            return {meshio::encodeObj, meshio::decodeObj};
-        case MeshFormatId::Off:
-            return {meshio::encodeOff, meshio::decodeOff};
-        case MeshFormatId::Gifti:
-            return {meshio::encodeGifti, meshio::decodeGifti};
-        case MeshFormatId::FreeSurfer:
-            return {meshio::encodeFreeSurfer, meshio::decodeFreeSurfer};
-        case MeshFormatId::OpenMeeg:
-            return {meshio::encodeOpenMeeg, decodeOpenMeeg};
-    }
-    throw InternalError("codecOf: unknown mesh format");
-}
 
 /// The fault of `mesh`'s normals, or an empty text.
 std::string findNormalsFault(const TriangleMesh& mesh) {
@@ -145,7 +105,7 @@ void requireArrays(const MeshWriteOptions& options, const TriangleMesh& mesh,
         std::holds_alternative<std::vector<Color>>(options.pointArrays.front().values);
     const bool fits = (options.pointArrays.empty() || format.holdsPointArrays ||
                        (areColors && format.holdsColors)) &&
-                      (options.cellArrays.empty() || format.id == MeshFormatId::VtkXml);
+                      (options.cellArrays.empty() || format.holdsCellArrays);
     if (!fits) {
         throw InvalidInput(file + ": " + std::string(format.name) + " files hold no values at " +
                            (options.cellArrays.empty() ? "points" : "triangles") + "; write .vtp");
@@ -201,7 +161,6 @@ constexpr std::string_view kGzipMagic = "\x1F\x8B";
 const MeshFormat& formatOf(std::string_view bytes, std::string_view name, bool isPacked) {
     const std::string_view head = bytes.substr(0, kMeshHeadBytes);
     if (const MeshFormat* const found = recognizeMeshFormat(head, bytes.size())) return *found;
-    if (head.starts_with(meshio::fiff::kMagic)) return meshio::fiffFormat();
     const std::filesystem::path path(name);
     meshio::naming(name, [&] { meshio::refuseOtherContent(head, bytes.size(), path, isPacked); });
     try {
@@ -286,17 +245,16 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
     const TriangleMesh moved = movedTo(options, mesh, path.string());
     requireWritable(moved, format, options, path.string());
 
-    writeBytes(path, [&](ByteSink& sink) { codecOf(format.id).encode({moved, options}, sink); });
+    writeBytes(path, [&](ByteSink& sink) { format.codec->encode({moved, options}, sink); });
 }
 
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,
                     const MeshReadOptions& options) {
     return meshio::naming(name, [&] {
-        // any bytes may begin a binary STL file
-        const auto text = format.id == MeshFormatId::Stl ? bytes : withoutByteOrderMark(bytes);
-        MeshFile file = &format == &meshio::fiffFormat()
-                            ? meshio::decodeFiff(bytes, meshio::fiffPart(name).second, options)
-                            : codecOf(format.id).decode(text, options);
+        MeshReadOptions own = options;
+        if (own.part.empty()) own.part = meshio::fiffPart(name).second;
+        MeshFile file =
+            format.codec->decode(format.codec->isText ? withoutByteOrderMark(bytes) : bytes, own);
         file.format = &format;
         if (options.keepsFaults) {
             requireSomething(file.mesh);
@@ -345,8 +303,7 @@ MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& opti
     const std::filesystem::path file = meshio::fiffPart(path).first;
     const std::string head = meshio::readBytes(file, kMeshHeadBytes);
     const std::uint64_t byteCount = std::filesystem::file_size(file, error);
-    if (!head.starts_with(kGzipMagic) && !head.starts_with(meshio::fiff::kMagic) &&
-        !recognizeMeshFormat(head, byteCount)) {
+    if (!head.starts_with(kGzipMagic) && !recognizeMeshFormat(head, byteCount)) {
         meshio::naming(name, [&] { meshio::refuseOtherContent(head, byteCount, file, false); });
         const auto foreign = findForeignContent(file);  // zeros, whatever their length
         if (foreign) throw FileError(name + ": " + foreign->fault + "; " + foreign->remedy);

@@ -213,8 +213,6 @@ private:
     VertexId largestUsed_ = -1;
 };
 
-}  // namespace
-
 void encodeObj(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     sink << "# " << slicerHeaderLine(record.options) << "\n";
@@ -261,6 +259,24 @@ MeshFile decodeObj(std::string_view bytes, const MeshReadOptions& options) {
     return std::move(decoder).finish();
 }
 
+/// Lines of Wavefront's keywords up to a point.
+bool isObj(std::string_view head, std::uint64_t /*byteCount*/) {
+    constexpr std::string_view kOthers[] = {"mtllib", "usemtl", "o", "g", "s", "vt", "vn", "vp"};
+    ByteSource source(head);
+    while (!source.atEnd()) {
+        ByteSource line(source.line());
+        const std::string_view word = line.word();
+        if (word.empty() || word.starts_with('#') || std::ranges::count(kOthers, word)) continue;
+        return word == "v" && isNumber(line.word()) && isNumber(line.word()) &&
+               isNumber(line.word());
+    }
+    return false;
+}
+
+}  // namespace
+
+extern const Codec kObjCodec{isObj, decodeObj, encodeObj};
+
 namespace {
 
 /// Lines without their comments, empty ones left out; keeps the frame that a comment names.
@@ -302,8 +318,6 @@ public:
 private:
     ByteSource source_;
 };
-
-}  // namespace
 
 void encodeOff(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
@@ -368,5 +382,15 @@ MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options) {
     file.frame = lines.marks.frame();
     return file;
 }
+
+bool isOff(std::string_view head, std::uint64_t /*byteCount*/) {
+    const std::string_view line = firstLine(head);
+    const std::string_view word = line.substr(0, line.find_first_of(" \t"));
+    return word.ends_with("OFF") && word.find_first_not_of("STCN4nOF") == std::string_view::npos;
+}
+
+}  // namespace
+
+extern const Codec kOffCodec{isOff, decodeOff, encodeOff};
 
 }  // namespace adaptiso::meshio

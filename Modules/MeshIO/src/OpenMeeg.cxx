@@ -86,8 +86,6 @@ MeshFile decodeFreeSurferTri(std::string_view bytes) {
     return file;
 }
 
-}  // namespace
-
 void encodeOpenMeeg(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     const std::vector<Normal> normals =
@@ -106,8 +104,7 @@ void encodeOpenMeeg(const MeshRecord& record, ByteSink& sink) {
     }
 }
 
-MeshFile decodeOpenMeeg(std::string_view bytes) {
-    if (beginsWithNumber(bytes)) return decodeFreeSurferTri(bytes);
+MeshFile decodeTri(std::string_view bytes) {
     ByteSource source(bytes);
     MeshFile file;
     requireDash(source, "points");
@@ -138,6 +135,25 @@ MeshFile decodeOpenMeeg(std::string_view bytes) {
     requireNoMoreText({"triangles", triangles, 3}, source.rest(), file.warnings);
     return file;
 }
+
+/// Neither says a frame.
+MeshFile decodeOpenMeeg(std::string_view bytes, const MeshReadOptions& options) {
+    MeshFile file = beginsWithNumber(bytes) ? decodeFreeSurferTri(bytes) : decodeTri(bytes);
+    file.frame = options.inputCoordinates;
+    return file;
+}
+
+bool isOpenMeeg(std::string_view head, std::uint64_t /*byteCount*/) {
+    ByteSource source(head);
+    const bool hasDash = source.word() == "-";
+    const std::string_view count = source.word();
+    return hasDash && !count.empty() &&
+           count.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+}  // namespace
+
+extern const Codec kOpenMeegCodec{isOpenMeeg, decodeOpenMeeg, encodeOpenMeeg};
 
 }  // namespace adaptiso::meshio
 

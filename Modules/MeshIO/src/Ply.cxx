@@ -443,8 +443,6 @@ void encodeTriangle(const Triangle& triangle, ByteSink& sink) {
     for (const VertexId vertex : triangle) sink.littleEndian(static_cast<std::int32_t>(vertex));
 }
 
-}  // namespace
-
 void encodePly(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     const std::vector<Column> columns = columnsOf(record.options.pointArrays);
@@ -498,6 +496,15 @@ MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
     if (counted.count > 0) values.requireNoMoreRows(counted, file.warnings);
     return file;
 }
+
+bool isPly(std::string_view head, std::uint64_t /*byteCount*/) {
+    const std::string_view text = trimmed(head);
+    return lowerCase(text.substr(0, text.find_first_of(" \t\r\n"))) == "ply";
+}
+
+}  // namespace
+
+extern const Codec kPlyCodec{isPly, decodePly, encodePly};
 
 }  // namespace adaptiso::meshio
 

@@ -219,8 +219,6 @@ bool looksBinary(std::string_view bytes) {
     return !head.starts_with("solid") || head.find('\0') != std::string::npos;
 }
 
-}  // namespace
-
 void encodeStl(const MeshRecord& record, ByteSink& sink) {
     const TriangleMesh& mesh = record.mesh;
     std::string header = slicerHeaderLine(record.options);
@@ -241,5 +239,20 @@ MeshFile decodeStl(std::string_view bytes, const MeshReadOptions& options) {
     return looksBinary(bytes) ? decodeBinary(ByteSource(bytes), marks)
                               : decodeText(ByteSource(withoutByteOrderMark(bytes)), marks);
 }
+
+bool isStl(std::string_view head, std::uint64_t byteCount) {
+    constexpr std::size_t kBegin = kHeaderBytes + sizeof(std::uint32_t);
+    if (head.size() >= kBegin) {
+        const auto count = loadAs<std::uint32_t>(head.data() + kHeaderBytes, std::endian::little);
+        if (count > 0 && byteCount == kBegin + kTriangleBytes * std::uint64_t{count}) return true;
+    }
+    const std::string text = lowerCase(trimmed(withoutByteOrderMark(head)));
+    return text.starts_with("solid") && text.find("facet") != std::string::npos &&
+           text.find('\0') == std::string::npos;
+}
+
+}  // namespace
+
+extern const Codec kStlCodec{isStl, decodeStl, encodeStl, false};
 
 }  // namespace adaptiso::meshio

@@ -529,8 +529,6 @@ void encodePointData(const MeshRecord& record, ByteSink& sink) {
     }
 }
 
-}  // namespace
-
 void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink) {
     constexpr std::size_t kMost32BitTriangles = std::numeric_limits<std::int32_t>::max() / 4;
     const TriangleMesh& mesh = record.mesh;
@@ -548,5 +546,13 @@ void encodeVtkLegacy(const MeshRecord& record, ByteSink& sink) {
 MeshFile decodeVtkLegacy(std::string_view bytes, const MeshReadOptions& options) {
     return LegacyDecoder(bytes, options).decode();
 }
+
+bool isVtkLegacy(std::string_view head, std::uint64_t /*byteCount*/) {
+    return trimmed(head).starts_with("# vtk DataFile");
+}
+
+}  // namespace
+
+extern const Codec kVtkLegacyCodec{isVtkLegacy, decodeVtkLegacy, encodeVtkLegacy};
 
 }  // namespace adaptiso::meshio

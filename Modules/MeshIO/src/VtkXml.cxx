@@ -500,8 +500,6 @@ private:
     std::string elements_, data_;
 };
 
-}  // namespace
-
 void encodeVtkXml(const MeshRecord& record, ByteSink& sink) {
     VtpEncoder().encode(record, sink);
 }
@@ -550,5 +548,13 @@ MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
     file.warnings = std::move(reader.unpacking.warnings);
     return file;
 }
+
+bool isVtkXml(std::string_view head, std::uint64_t /*byteCount*/) {
+    return xmlRoot(head) == "VTKFile";
+}
+
+}  // namespace
+
+extern const Codec kVtkXmlCodec{isVtkXml, decodeVtkXml, encodeVtkXml};
 
 }  // namespace adaptiso::meshio

@@ -22,6 +22,21 @@
 
 namespace adaptiso::meshio {
 
+std::string_view xmlRoot(std::string_view text) {
+    using namespace std::string_view_literals;
+    text = trimmed(text);
+    while (text.starts_with("<?") || text.starts_with("<!")) {
+        const bool isComment = text.starts_with("<!--");
+        const std::string_view end = text.starts_with("<?") ? "?>"sv : isComment ? "-->"sv : ">"sv;
+        const std::size_t at = text.find(end);
+        if (at == std::string_view::npos) return {};
+        text = trimmed(text.substr(at + end.size()));
+    }
+    if (!text.starts_with('<')) return {};
+    text.remove_prefix(1);
+    return text.substr(0, text.find_first_of(" \t\r\n/>"));
+}
+
 namespace {
 
 /// Carries the handler through expat's C callbacks, which exceptions must not cross.

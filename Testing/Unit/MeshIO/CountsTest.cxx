@@ -55,7 +55,7 @@ protected:
     const MeshFormat& format() const { return meshFormats()[GetParam()]; }
     std::string name() const { return exampleName(format()); }
     std::string ballBytes() const { return written(ball(), name()); }
-    bool countsRecords() const { return format().id != MeshFormatId::Obj; }
+    bool countsRecords() const { return format().name != "Wavefront OBJ"; }
 };
 
 TEST_P(CountOf, JoinedFilesAreRefused) {
@@ -82,7 +82,7 @@ TEST_P(CountOf, AFewBytesBehindTheEndAreAWarning) {
     if (!countsRecords()) GTEST_SKIP() << "OBJ counts nothing";
     const MeshFile file = decoded(ballBytes() + "#end", name());
     EXPECT_EQ(file.mesh.triangles.size(), kTriangles);
-    const bool isComment = format().id == MeshFormatId::Off;
+    const bool isComment = format().name == "OFF";
     EXPECT_EQ(codesOf(file), isComment ? Codes{} : Codes{"trailing-bytes"});
 }
 

@@ -162,7 +162,7 @@ TEST(SettleRounding, MeasuresTheRoundingOfTheFile) {
     for (const double far : {10.0, 4e4, 4e5}) {
         for (const char* name : {"a.obj", "a.off", "a.gii", "a.surf", "a.tri", "a.vtp"}) {
             const MeshFormat format = findMeshFormat(name);
-            const CoordinateFrame frame = defaultFrame(format);
+            const CoordinateFrame frame = format.defaultFrame;
             TriangleMesh sphere = testing::icosphere(3, {far, 0.3 * far, -0.7 * far}, 50);
             sphere.normals = {};
             const std::vector<Vec3> exact = sphere.points;

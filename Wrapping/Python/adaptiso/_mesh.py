@@ -132,7 +132,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         return len(edges) == 0 or bool(np.unique(edges, axis=0, return_counts=True)[1].min() > 1)
 
     def save(self, path: Any, frame: Optional[str] = None) -> None:
-        """Write the mesh: .vtp, .vtk, .ply, .stl, .obj, .off, .gii, FreeSurfer's, or .tri.
+        """Write the mesh in a format of adaptiso-mesh.
 
         The file is whole or not there, and the same as the program adaptiso-mesh writes. Where the
         format's digits take it noticeably beyond the bound that was asked for, the logger
@@ -141,7 +141,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         Parameters
         ----------
         path : str or path
-            The extension chooses the format.
+            The extension chooses the format; the message about an unknown one lists all.
         frame : {"ras", "lps", "tkras", "voxel"}, optional
             Of the points written. Default: "tkras" for FreeSurfer's formats, else "ras". A mesh of
             unknown frame is written as it is, and its file says no frame.

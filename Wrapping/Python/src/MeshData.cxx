@@ -213,13 +213,12 @@ std::string MeshData::writeTo(const std::filesystem::path& path,
     const MeshFormat& format = findMeshFormat(path);
     MeshWriteOptions options;
     options.cellArrays = std::move(cellArrays);
-    options.frame =
-        frame.value_or(frame_ == CoordinateFrame::TkRas ? frame_ : defaultFrame(format));
+    options.frame = frame.value_or(frame_ == CoordinateFrame::TkRas ? frame_ : format.defaultFrame);
     if (options.frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
         throw InvalidInput("frame voxel: " + std::string(format.name) + " holds points in mm only");
     }
     if (!isFrameKnown_) {
-        if (frame || format.id == MeshFormatId::FreeSurfer) {
+        if (frame || format.defaultFrame == CoordinateFrame::TkRas) {
             throw InvalidInput(path.string() +
                                ": the mesh is of a file that does not say its coordinate frame" +
                                kStateIt);

@@ -54,7 +54,8 @@ struct MeshWriteOptions {
     /// several components: blanks become _, and components arrays of their own. OBJ and OFF hold
     /// one array of colours alone (MeshFormat::holdsColors).
     std::vector<PointArray> pointArrays{};
-    /// VTK XML only: written beside the mesh, as Int32.
+    /// Where the format holds them (MeshFormat::holdsCellArrays): written beside the mesh, as
+    /// Int32.
     std::vector<CellArray> cellArrays{};
     /// The mesh is in `frame` already, as readMesh() gives it, and is written as it is. TkRas and
     /// Voxel then do without `volume`.
@@ -101,6 +102,9 @@ struct MeshReadOptions {
     /// surface's folder. Empty: such files are refused.
     std::filesystem::path folder{};
     std::size_t storedBytes = 0;  ///< of the file that the bytes were unpacked from; 0: of none
+    /// The surface of a FIFF file with several; empty: the one that the file's name has behind a
+    /// colon.
+    std::string part{};
 };
 
 /// A file's content as stored: nothing is moved to another frame, but by GIFTI's matrix to

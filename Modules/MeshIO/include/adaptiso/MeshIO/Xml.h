@@ -9,6 +9,9 @@
 
 namespace adaptiso::meshio {
 
+/// The name of the outermost element; empty if the text is not XML.
+std::string_view xmlRoot(std::string_view text);
+
 using XmlAttributes = std::map<std::string, std::string, std::less<>>;
 
 /// The value of `name`; damage if the element has none.
