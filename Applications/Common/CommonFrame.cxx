@@ -16,9 +16,7 @@ constexpr CoordinateFrame kFrames[] = {CoordinateFrame::Ras, CoordinateFrame::Lp
                                        CoordinateFrame::TkRas, CoordinateFrame::Voxel};
 
 bool lacksVolume(const NamedMesh& mesh) {
-    const bool needsVolume =
-        mesh.file.frame == CoordinateFrame::TkRas || mesh.file.frame == CoordinateFrame::Voxel;
-    return needsVolume && !mesh.file.volume;
+    return mesh.file.frame && needsVolume(*mesh.file.frame) && !mesh.file.volume;
 }
 
 std::string nameOf(const NamedMesh& mesh) {
@@ -42,11 +40,6 @@ std::string namesOf(std::span<const NamedMesh> meshes) {
 
 std::string frameText(const NamedMesh& mesh) {
     return nameOf(mesh) + " is in " + std::string(toString(*mesh.file.frame));
-}
-
-/// A conformed volume around the origin: its tkRAS is scanner RAS itself.
-ImageGeometry standInVolume() {
-    return conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
 }
 
 /// Advice to state the frames of `meshes`: once for all if every frame is unknown, else for each.

@@ -48,10 +48,6 @@ std::string marked(const std::string& name) {
     return name.substr(0, at) + "." + std::string(kMark) + name.substr(at);
 }
 
-bool needsVolume(CoordinateFrame frame) {
-    return frame == CoordinateFrame::TkRas || frame == CoordinateFrame::Voxel;
-}
-
 }  // namespace
 
 FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wanted,

@@ -302,12 +302,11 @@ void openMesh(const std::string& path) {
     options.keepsPointArrays = true;
     const MeshFile file = readMesh(path, options);
     const CoordinateFrame frame = file.frame.value_or(CoordinateFrame::Ras);
-    const bool needsVolume = frame == CoordinateFrame::TkRas || frame == CoordinateFrame::Voxel;
     std::optional<ImageGeometry> volume = file.volume;
-    if (needsVolume && !volume && image) {
+    if (needsVolume(frame) && !volume && image) {
         volume = frameVolume(frame, image->read.volume.view().geometry());
     }
-    const bool isKnown = !needsVolume || volume;
+    const bool isKnown = !needsVolume(frame) || volume;
     shown.set(fromFrame(file.mesh, isKnown ? frame : CoordinateFrame::Ras, volume));
     std::string valuesName;
     for (const PointArray& array : file.pointArrays) {

@@ -115,6 +115,10 @@ ImageGeometry conformedGeometry(const ImageGeometry& volume) {
     return conformed;
 }
 
+ImageGeometry standInVolume() {
+    return conformedGeometry({});
+}
+
 ImageGeometry frameVolume(CoordinateFrame frame, const ImageGeometry& image) {
     return frame == CoordinateFrame::TkRas && !image.isMirrored() ? conformedGeometry(image)
                                                                   : image;

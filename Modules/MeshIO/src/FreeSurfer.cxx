@@ -30,7 +30,7 @@ Vec3 halfSize(const ImageGeometry& volume) {
 /// A volume whose tkRAS is `frame` (Ras or Lps) itself: FreeSurfer's conformed volume around the
 /// scanner's origin, for Lps turned by half a turn about the z axis.
 ImageGeometry neutralVolume(CoordinateFrame frame) {
-    ImageGeometry volume = conformedGeometry(ImageGeometry{});
+    ImageGeometry volume = standInVolume();
     if (frame == CoordinateFrame::Lps) {
         const Mat3 halfTurn = Mat3::diagonal(-1, -1, 1);
         volume.originMm = halfTurn * volume.originMm;

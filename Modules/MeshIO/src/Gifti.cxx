@@ -75,9 +75,7 @@ void encodeMatrixRow(const AffineTransform& transform, int row, ByteSink& sink) 
 /// where that is not known.
 void encodeCoordinateSystem(const MeshWriteOptions& options, ByteSink& sink) {
     const bool isRas = options.frame == CoordinateFrame::Ras;
-    const bool needsVolume =
-        options.frame == CoordinateFrame::TkRas || options.frame == CoordinateFrame::Voxel;
-    if (!options.saysFrame || (needsVolume && !options.volume)) return;
+    if (!options.saysFrame || (needsVolume(options.frame) && !options.volume)) return;
     const AffineTransform matrix = toRas(options.frame, options.volume);
     sink << "<CoordinateSystemTransformMatrix>\n<DataSpace><![CDATA["
          << (isRas ? kScannerSpace : kUnknownSpace)
@@ -132,7 +130,7 @@ std::optional<ImageGeometry> volumeOf(const Metadata& metadata) {
             {number(key + "_R", lps.x), number(key + "_A", lps.y), number(key + "_S", lps.z)});
     };
     const double missing = std::nan("");
-    ImageGeometry volume = conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
+    ImageGeometry volume = standInVolume();
     const Vec3 centre = vector("C", {missing, missing, missing});
     const std::array<std::string_view, 3> extents{"Width", "Height", "Depth"},
         steps{"Xsize", "Ysize", "Zsize"}, axes{"X", "Y", "Z"};

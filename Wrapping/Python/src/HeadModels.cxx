@@ -176,7 +176,7 @@ std::vector<TriangleMesh> readyMeshes(const HeadSources& sources, BemModel& mode
         std::optional<ImageGeometry> volume = model.image ? model.image : surface->image();
         if (volume) volume = frameVolume(CoordinateFrame::TkRas, *volume);
         if (surface->frame() == CoordinateFrame::TkRas && !volume) {
-            volume = conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
+            volume = standInVolume();
         }
         if (!model.tkRasVolume) model.tkRasVolume = volume;
         meshes.push_back(inLps(*surface, volume));

@@ -134,10 +134,6 @@ void requireFaultless(const TriangleMesh& mesh) {
     }
 }
 
-bool needsVolume(CoordinateFrame frame) {
-    return frame == CoordinateFrame::TkRas || frame == CoordinateFrame::Voxel;
-}
-
 }  // namespace
 
 std::shared_ptr<MeshData> MeshData::fromLps(TriangleMesh mesh, std::optional<ImageGeometry> image,
@@ -230,10 +226,8 @@ std::string MeshData::writeTo(const std::filesystem::path& path,
             throw InvalidInput(
                 "the mesh is in tkRAS of a volume that is not known; load it with volume=");
         }
-        // any volume's tkRAS will do to write it as it is: that of a conformed one
-        const ImageGeometry standIn = conformedGeometry({{256, 256, 256}, {-128, -128, -128}, {}});
-        options.volume = standIn;
-        writeMesh(fromFrame(mesh_, CoordinateFrame::TkRas, standIn), path, options);
+        options.volume = standInVolume();  // any volume's tkRAS will do to write it as it is
+        writeMesh(fromFrame(mesh_, CoordinateFrame::TkRas, options.volume), path, options);
         return {};
     }
     if (needsVolume(options.frame)) {

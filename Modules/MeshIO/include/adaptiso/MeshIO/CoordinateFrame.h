@@ -19,6 +19,11 @@ enum class CoordinateFrame {
             ///< centre
 };
 
+/// True for tkRAS and voxel indices, which are those of a volume.
+constexpr bool needsVolume(CoordinateFrame frame) {
+    return frame == CoordinateFrame::TkRas || frame == CoordinateFrame::Voxel;
+}
+
 /// The name written into files: "RAS mm", "LPS mm", "tkRAS mm", "voxel indices".
 std::string_view toString(CoordinateFrame frame);
 
@@ -77,6 +82,10 @@ AffineTransform indexToTkRas(const ImageGeometry& volume);
 /// subject's orig.mgz): 256^3 voxels of 1 mm along left, inferior and anterior, around the same
 /// centre. Its tkRAS is scanner RAS less that centre (c_ras), whatever axes the volume has.
 ImageGeometry conformedGeometry(const ImageGeometry& volume);
+
+/// The conformed volume around the origin: its tkRAS is scanner RAS itself. For points in tkRAS of
+/// a volume that is not known.
+ImageGeometry standInVolume();
 
 /// The volume by which programs write and read a frame of this image. It is the image, but for
 /// tkRAS of an image that is not stored as FreeSurfer stores volumes: by its own axes tkRAS would
