@@ -11,6 +11,7 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/MeshIO/Formats.h"
 
 namespace adaptiso::labels {
@@ -87,10 +88,10 @@ void declareInput(CLI::App& app, LabelsOptions& options) {
                "Take the image for a label map even if its values change from voxel to voxel, as "
                "those of a scan do");
     input.text("--names", "FILE", options.names,
-               "A table of names and colours: BIDS .tsv, FreeSurfer, ITK-SNAP, 3D Slicer, "
-               "MRIcron, FSL, GIFTI or JSON, recognised by content (default: what lies beside "
-               "the image under its name, or is its BIDS dataset's, or is in the image: 3D "
-               "Slicer's segments, the LabelTable of a NIfTI extension)");
+               "A table of names and colours (" + labelTableNames() +
+                   "), recognised by content (default: what lies beside "
+                   "the image under its name, or is its BIDS dataset's, or is in the image: 3D "
+                   "Slicer's segments, the LabelTable of a NIfTI extension)");
 }
 
 void declareRegions(CLI::App& app, LabelsOptions& options) {

@@ -387,9 +387,8 @@ Rows rowsOf(const std::vector<Line>& lines, std::vector<std::vector<std::string>
     return rowsOfWords(lines);
 }
 
-}  // namespace
-
-LabelTable decodeRows(std::string_view text) {
+LabelTable decodeRows(const TableFile& file) {
+    const std::string_view text = file.text;
     const std::vector<Line> lines = linesOf(text);
     if (lines.empty()) refuseKind("it holds nothing but comments");
     std::vector<std::vector<std::string>> cells;  // which rows are views of
@@ -429,5 +428,9 @@ LabelTable decodeRows(std::string_view text) {
     return isHexFirst || areMost(rows, endsInHex) ? decodeHex(rows, text, isHexFirst)
                                                   : decodeNames(rows);
 }
+
+}  // namespace
+
+extern const TableCodec kRowTables{nullptr, decodeRows};
 
 }  // namespace adaptiso::labelnames

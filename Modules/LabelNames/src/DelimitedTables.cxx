@@ -141,15 +141,15 @@ int chooseIndex(const Fields& header, const std::vector<Fields>& rows, const Col
     return columns.index;
 }
 
-}  // namespace
-
-bool isDelimited(std::string_view text) {
-    const std::vector<Line> lines = linesOf(text);
+/// True if the first line names columns, among them an index and a name.
+bool isDelimited(const TableFile& file) {
+    if (file.first == '<' || file.first == '{' || file.first == '[') return false;
+    const std::vector<Line> lines = linesOf(file.text);
     return !lines.empty() && columnsOf(lines.front()).isTable();
 }
 
-LabelTable decodeDelimited(std::string_view text) {
-    const std::vector<Line> lines = linesOf(text);
+LabelTable decodeDelimited(const TableFile& file) {
+    const std::vector<Line> lines = linesOf(file.text);
     Columns columns = columnsOf(lines.front());
     const Fields header = split(lines.front(), columns.separator);
     const bool isSlicer = findColumn(header, {"labelvalue"}) >= 0;
@@ -177,7 +177,7 @@ LabelTable decodeDelimited(std::string_view text) {
                          fieldOf(row, columns.abbreviation),
                          {}};
         const std::string color = fieldOf(row, columns.color);
-        entry.color = found.colorOf(color, where, endsText(line, text));
+        entry.color = found.colorOf(color, where, endsText(line, file.text));
         const std::optional<Channels> channels = channelsOf(row, columns);
         if (color.empty() && channels) {
             found.add(std::move(entry), *channels, where);
@@ -187,5 +187,9 @@ LabelTable decodeDelimited(std::string_view text) {
     }
     return found.finish();
 }
+
+}  // namespace
+
+extern const TableCodec kDelimitedTables{isDelimited, decodeDelimited};
 
 }  // namespace adaptiso::labelnames

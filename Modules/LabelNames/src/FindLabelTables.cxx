@@ -27,13 +27,14 @@ std::string stemOf(const std::string& name) {
 std::vector<fs::path> ownNames(const fs::path& image) {
     const std::string name = image.filename().string(), stem = stemOf(name);
     std::vector<fs::path> names;
-    for (const char* const ending :
-         {".tsv", ".txt", ".ctbl", ".csv", ".json", ".xml", ".label.gii", ".lut"}) {
-        // MRIcron's names keep .nii but not .gz
-        for (const std::string& own : {stem, stem + ".nii", name, stem + "_lut", stem + "-lut",
-                                       stem + "_LUT", stem + "_labels"}) {
-            const fs::path path = image.parent_path() / (own + ending);
-            if (std::ranges::find(names, path) == names.end()) names.push_back(path);
+    for (const LabelTableKind& kind : labelTableKinds()) {
+        for (const std::string_view ending : kind.endings) {
+            // MRIcron's names keep .nii but not .gz
+            for (std::string own : {stem, stem + ".nii", name, stem + "_lut", stem + "-lut",
+                                    stem + "_LUT", stem + "_labels"}) {
+                const fs::path path = image.parent_path() / own.append(ending);
+                if (std::ranges::find(names, path) == names.end()) names.push_back(path);
+            }
         }
     }
     return names;

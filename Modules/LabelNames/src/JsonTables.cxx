@@ -140,10 +140,8 @@ bool isByValue(const Json& object) {
     return true;
 }
 
-}  // namespace
-
-LabelTable decodeJson(std::string_view text) {
-    const Json json = parseJson<Json>(text);
+LabelTable decodeJson(const TableFile& file) {
+    const Json json = parseJson<Json>(file.text);
     if (json.is_discarded()) refuseKind("its JSON is damaged, or has a key twice");
     if (json.is_array() && !json.empty()) return decodeList(json);
     if (json.is_object()) {
@@ -158,5 +156,13 @@ LabelTable decodeJson(std::string_view text) {
     }
     refuseKind("its JSON is neither a list of labels nor names by value");
 }
+
+bool isJson(const TableFile& file) {
+    return file.first == '{' || file.first == '[';
+}
+
+}  // namespace
+
+extern const TableCodec kJsonTables{isJson, decodeJson};
 
 }  // namespace adaptiso::labelnames

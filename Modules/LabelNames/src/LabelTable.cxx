@@ -13,6 +13,13 @@
 #include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso {
+namespace labelnames {
+
+// each at the end of its own .cxx
+extern const TableCodec kDelimitedTables, kRowTables, kJsonTables, kXmlTables;
+
+}  // namespace labelnames
+
 namespace {
 
 using namespace labelnames;
@@ -28,13 +35,14 @@ bool isText(std::string_view bytes) {
 }
 
 /// Reds, greens and blues of 0 to 255. MRIcron's own atlases have black where they have no colour.
-LabelTable decodeLut(std::string_view bytes) {
+LabelTable decodeLut(const TableFile& file) {
     LabelTable table;
     table.format = "MRIcron colours";
     for (std::int32_t value = 0; value < 256; ++value) {
         LabelColor color{};
         for (std::size_t n = 0; n < 3; ++n) {
-            color[n] = static_cast<std::uint8_t>(bytes[256 * n + static_cast<std::size_t>(value)]);
+            color[n] =
+                static_cast<std::uint8_t>(file.bytes[256 * n + static_cast<std::size_t>(value)]);
         }
         if (color == LabelColor{}) continue;
         LabelEntry& entry = table.entries.emplace_back();
@@ -45,22 +53,80 @@ LabelTable decodeLut(std::string_view bytes) {
     return table;
 }
 
+bool isLut(const TableFile& file) {
+    return file.bytes.size() == kLutBytes && file.text.empty();
+}
+
+constexpr TableCodec kLutTables{isLut, decodeLut};
+
+const LabelTableKind kKinds[] = {
+    {"BIDS, CAT12, TotalSegmentator",
+     {".tsv"},
+     &kDelimitedTables,
+     "tabs, semicolons or commas, a header with `index` and `name` (or `ROIid`, `ROIname`, "
+     "`Label`, ...); `abbreviation` and `color` where there are: `#ff8000`, `#f80`, `rgb(255, 128, "
+     "0)`, `red`"},
+    {"FreeSurfer, MRtrix",
+     {".txt"},
+     &kRowTables,
+     "rows of index, name, R G B A; FreeSurfer's type of tissue behind these, MRtrix's "
+     "abbreviation (`L.BSTS`) before the name"},
+    {"FSLeyes", {}, &kRowTables, "rows of index, R G B (0 to 1, or to 255), name"},
+    {"Connectome Workbench", {}, &kRowTables, "a line with the name, one with index, R G B A"},
+    {"ITK-SNAP", {}, &kRowTables, "rows of index, R G B A, two flags, the name in quotes"},
+    {"3D Slicer",
+     {".ctbl", ".csv"},
+     &kRowTables,
+     "rows as FreeSurfer's under `# Color table file`, `_` for blanks; or a header with "
+     "LabelValue, Name, Color_R, ..."},
+    {"JSON",
+     {".json"},
+     &kJsonTables,
+     "names or objects by value, a list of objects, or a colour map of niivue"},
+    {"FSL",
+     {".xml"},
+     &kXmlTables,
+     "an atlas in XML; of a probabilistic one label n is the value n + 1"},
+    {"GIFTI", {".label.gii"}, &kXmlTables, "the label table of a `.gii`"},
+    {"AAL", {}, &kRowTables, "rows of abbreviation, name and index"},
+    {"MRIcron", {}, &kRowTables, "rows of index and name, with or without a code"},
+    {"MRIcron's colours",
+     {".lut"},
+     &kLutTables,
+     "768 bytes: the reds, greens and blues of the values 0 to 255, no names; black is no colour"},
+};
+
 LabelTable decode(std::string_view bytes) {
     if (bytes.empty()) refuseKind("it is empty");
-    if (bytes.size() == kLutBytes && !isText(bytes)) return decodeLut(bytes);
-    bytes = withoutByteOrderMark(bytes);
+    TableFile file{bytes, {}, 0};
+    if (isText(bytes)) {
+        file.text = toUtf8(withoutByteOrderMark(bytes));
+        const std::string_view start = trimmed(std::string_view(file.text).substr(0, 4096));
+        if (start.empty()) refuseKind("it holds nothing but blanks");
+        file.first = start.front();
+    }
+    for (const LabelTableKind& kind : kKinds) {
+        const auto recognizes = kind.codec->recognizes;
+        if (recognizes != nullptr && recognizes(file)) return kind.codec->decode(file);
+    }
+    if (file.first != 0) return kRowTables.decode(file);
     if (isUtf16(bytes)) throw FileError(faultOfText(bytes));
-    if (!isText(bytes)) refuseKind("it is no text");
-    const std::string text = toUtf8(bytes);
-    const std::string_view start = trimmed(std::string_view(text).substr(0, 4096));
-    if (start.empty()) refuseKind("it holds nothing but blanks");
-    // XML names its own encoding
-    if (start.front() == '<') return decodeXml(trimmed(bytes));
-    if (start.front() == '{' || start.front() == '[') return decodeJson(text);
-    return isDelimited(text) ? decodeDelimited(text) : decodeRows(text);
+    refuseKind("it is no text");
 }
 
 }  // namespace
+
+std::span<const LabelTableKind> labelTableKinds() {
+    return kKinds;
+}
+
+std::string labelTableNames() {
+    std::string names;
+    for (const LabelTableKind& kind : kKinds) {
+        names.append(names.empty() ? "" : ", ").append(kind.name);
+    }
+    return names;
+}
 
 const LabelEntry* LabelTable::find(std::int32_t value) const {
     const auto at = std::ranges::lower_bound(entries, value, {}, &LabelEntry::value);

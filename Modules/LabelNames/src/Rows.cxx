@@ -46,10 +46,8 @@ void damaged(const std::string& what) {
 }
 
 void refuseKind(const std::string& why) {
-    throw NoLabelTable(
-        "is no table of labels that can be read (BIDS .tsv, FreeSurfer, ITK-SNAP, "
-        "3D Slicer, MRIcron, FSL, GIFTI, JSON): " +
-        why);
+    throw NoLabelTable("is no table of labels that can be read (" + labelTableNames() +
+                       "): " + why);
 }
 
 std::vector<Line> linesOf(std::string_view text) {

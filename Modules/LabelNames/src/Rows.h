@@ -89,13 +89,22 @@ private:
     std::string firstUnread_;
 };
 
-// One a family of formats. They throw FileError without the file's name.
-LabelTable decodeDelimited(std::string_view text);  ///< a header names the columns
-LabelTable decodeRows(std::string_view text);       ///< the columns say what they are
-LabelTable decodeXml(std::string_view text);
-LabelTable decodeJson(std::string_view text);
+/// A file as decoders take it.
+struct TableFile {
+    std::string_view bytes;
+    std::string text;  ///< in UTF-8, without a byte order mark; empty: it is no text
+    char first = 0;    ///< of the text, blanks passed over
+};
 
-/// True if the first line of `text` names columns, among them an index and a name.
-bool isDelimited(std::string_view text);
+/// How a family of tables is recognised and read: one at the end of each family's .cxx, all in the
+/// table of LabelTable.cxx.
+struct TableCodec {
+    /// Null: all text that no other recognises.
+    bool (*recognizes)(const TableFile& file);
+    /// Throws FileError without the file's name.
+    LabelTable (*decode)(const TableFile& file);
+};
+
+LabelTable decodeXml(std::string_view text);
 
 }  // namespace adaptiso::labelnames

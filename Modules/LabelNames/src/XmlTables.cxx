@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "Rows.h"
+#include "adaptiso/Core/TextLines.h"
 #include "adaptiso/MeshIO/Xml.h"
 
 namespace adaptiso::labelnames {
@@ -96,6 +97,15 @@ private:
     std::vector<std::pair<Attributes, std::string>> rows_;
 };
 
+bool isXml(const TableFile& file) {
+    return file.first == '<';
+}
+
+/// XML names its own encoding.
+LabelTable decodeFile(const TableFile& file) {
+    return decodeXml(trimmed(withoutByteOrderMark(file.bytes)));
+}
+
 }  // namespace
 
 LabelTable decodeXml(std::string_view text) {
@@ -103,5 +113,7 @@ LabelTable decodeXml(std::string_view text) {
     meshio::parseXml(text, labels);
     return labels.finish();
 }
+
+extern const TableCodec kXmlTables{isXml, decodeFile};
 
 }  // namespace adaptiso::labelnames

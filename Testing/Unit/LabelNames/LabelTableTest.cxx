@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "Support/Pages.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 
 namespace adaptiso {
@@ -473,8 +474,18 @@ TEST(LabelColors, KeepAwayFromThoseOfTheTable) {
     EXPECT_EQ(labelColors(many, std::vector<std::optional<LabelColor>>(100))[6], green);
 }
 
+TEST(LabelTableKinds, AreThoseOfTheirPage) {
+    const std::string header = "| kind | ending beside an image | what it looks like |\n";
+    std::string table = header + "|---|---|---|\n";
+    for (const LabelTableKind& kind : labelTableKinds()) {
+        table += "| " + std::string(kind.name) + " | " + testing::quotedList(kind.endings) + " | " +
+                 std::string(kind.looks) + " |\n";
+    }
+    testing::expectOnPage(LABELS_PAGE, header, "| in a NRRD", table);
+}
+
 /// Debian's mricron-data and python3-mne, where they are installed.
-class RealTables : public testing::Test {
+class RealTables : public ::testing::Test {
 protected:
     static LabelTable read(const std::string& file) {
         if (!std::filesystem::exists(file)) return {};

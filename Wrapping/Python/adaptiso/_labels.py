@@ -252,8 +252,8 @@ def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional
         The regions that are wanted, by number or name; their walls are those that the whole map gives them. Default:
         all.
     names : path or mapping of int to str, optional
-        Names by label, or a table of names and colours (BIDS, FreeSurfer, ITK-SNAP, 3D Slicer,
-        MRIcron, FSL, GIFTI, JSON). Default: of a path, what lies beside the file, or in it (3D
+        Names by label, or a table of names and colours in a format that adaptiso-labels
+        takes. Default: of a path, what lies beside the file, or in it (3D
         Slicer's segments, the LabelTable of a NIfTI extension).
     affine : array_like of shape (4, 4), optional
         Takes voxel indices to scanner RAS mm. Default: the image's own; of an array the identity.

@@ -43,23 +43,24 @@ public:
     using FileError::FileError;
 };
 
-/// The table that a file's bytes hold, recognised by content alone:
-///   BIDS         tab-separated, a header with `index` and `name`; `abbreviation`, `color`; CAT12's
-///                ROIid, ROIabbr and ROIname with semicolons, and others' headers, likewise
-///   3D Slicer    the same with commas and LabelValue, Name, Color_R, Color_G, Color_B; and .ctbl
-///                or .txt: rows as FreeSurfer's under "# Color table file", `_` for blanks in names
-///   FreeSurfer   rows of index, name, R G B, perhaps A, perhaps a type of tissue; # begins a
-///   comment MRtrix       the same with an abbreviation ("L.BSTS") before the name FSLeyes rows of
-///   index, R G B (0 to 1, or to 255), perhaps A, and a name Workbench    a line with a name, one
-///   with index, R G B A ITK-SNAP     rows of index, R G B A, two flags and a name in quotes
-///   MRIcron      rows of index and name, or index, name and code; or 768 bytes, the reds, greens
-///                and blues of the values 0 to 255; black is no colour
-///   AAL          rows of abbreviation, name and index
-///   GIFTI        the LabelTable of a .gii
-///   FSL          an atlas in XML: label n of a probabilistic one is the value n + 1, else n
-///   JSON         {"1": "name"}, {"1": {"name": .., "color": ..}}, a list of objects with index (or
-///                key, id, value), name (or label) and color (or rgb, or red, green, blue), or
-///                niivue's {"R": [], "G": [], "B": [], "I": [], "labels": []}
+namespace labelnames {
+struct TableCodec;
+}
+
+/// A kind of table.
+struct LabelTableKind {
+    std::string_view name;                  ///< whose it is
+    std::vector<std::string_view> endings;  ///< of tables of this kind beside an image
+    const labelnames::TableCodec* codec;
+    std::string_view looks;  ///< what it looks like, in Markdown
+};
+
+/// All kinds; the likeliest endings first.
+std::span<const LabelTableKind> labelTableKinds();
+/// "BIDS, CAT12, ..."
+std::string labelTableNames();
+
+/// The table that a file's bytes hold, recognised by content alone (labelTableKinds()).
 ///
 /// Rows of other columns are refused, as numbers beside a name are no part of it. A colour that
 /// can't be read is left out with a warning.
@@ -88,8 +89,8 @@ struct FoundLabelTables {
     std::vector<std::filesystem::path> files;
 };
 
-/// Looks for tables beside a label image, by name, in this order: its own name with .tsv, .txt,
-/// .ctbl, .csv, .json, .xml, .label.gii or .lut, also after the image's ending (MRIcron's
+/// Looks for tables beside a label image, by name, in this order: its own name with
+/// LabelTableKind::endings, also after the image's ending (MRIcron's
 /// aal.nii.txt and aal.nii.lut) or with _lut, -lut or _labels before it; then, for an image of a
 /// BIDS dataset, the .tsv of its suffix, in its folder or one above it up to the dataset's, whose
 /// entities are all the image's ("dseg.tsv", "sub-01_dseg.tsv", "desc-aseg_dseg.tsv").
