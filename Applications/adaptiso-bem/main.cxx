@@ -29,7 +29,7 @@ constexpr const char* kSources = "Sources of lead fields";
 constexpr const char* kToolboxes =
     "Files for other programs, besides those of FreeSurfer and OpenMEEG";
 
-const std::vector<std::string> kPresets{"charm", "headreco", "aseg", "samseg", "totalsegmentator"};
+const std::vector<std::string> kPresets = tissuePresetNames();
 
 std::vector<std::string> parts(const std::string& text, char separator) {
     std::vector<std::string> result;

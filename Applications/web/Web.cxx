@@ -24,6 +24,7 @@
 #include "adaptiso-mesh/Info.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/ImageIO/ListSeries.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -352,6 +353,18 @@ EMSCRIPTEN_KEEPALIVE int adaptisoListSeries(const char* path) {
 
 EMSCRIPTEN_KEEPALIVE int adaptisoPreview(double isovalue) {
     return web::answering("adaptiso-mesh", [&] { web::preview(isovalue); });
+}
+
+/// What the page's forms offer, of the library's own tables: build.mjs writes it into the page.
+EMSCRIPTEN_KEEPALIVE int adaptisoChoices() {
+    return web::answering("adaptiso", [] {
+        adaptiso::Json formats = adaptiso::Json::array();
+        for (const adaptiso::MeshFormat& format : adaptiso::meshFormats()) {
+            formats.push_back({{"name", format.name}, {"extension", format.extensions.front()}});
+        }
+        web::answer = adaptiso::jsonText(
+            {{"formats", formats}, {"presets", adaptiso::tissuePresetNames()}}, -1);
+    });
 }
 
 /// \return 0 without an image

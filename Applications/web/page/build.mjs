@@ -2,7 +2,8 @@
 // adaptiso.wasm.
 import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
 import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
@@ -23,6 +24,16 @@ const packed = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");
 const read = (path) => readFileSync(path);
 const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
 
+/** What the programs in WebAssembly offer to choose from. */
+async function choices() {
+  const programs = await createRequire(import.meta.url)(resolve(folder, "adaptiso.js"))({ wasmBinary: read(join(folder, "adaptiso.wasm")) });
+  programs.ccall("adaptisoChoices", "number", [], []);
+  return JSON.parse(programs.ccall("adaptisoAnswer", "string", [], []));
+}
+const { formats, presets } = await choices();
+const formatOptions = (chosen) => formats.map(({ name, extension }) =>
+  `<option value="${extension}"${extension === chosen ? " selected" : ""}>${name}</option>`).join("");
+
 const kRun = `<div class="progress" hidden><p class="stage" aria-live="polite"></p><progress max="100" aria-label="Progress"></progress></div>
     <p class="refusal" role="alert" hidden></p><div class="choices row"></div><div class="result" hidden></div>`;
 const worker = `${read(join(folder, "adaptiso.js"))}\n${await bundle("src/worker.ts", "iife")}`;
@@ -31,6 +42,10 @@ const script = inScript(await bundle("src/main.ts", "iife"));
 const parts = {
   STYLE: read(join(here, "src/page.css")).toString(),
   RUN: kRun,
+  FORMATS: formatOptions(".vtp"),
+  FORMATSTOPRINT: formatOptions(".stl"),
+  EXTENSIONS: formats.map(({ extension }) => extension).join(", "),
+  PRESETS: presets.map((name) => `<option>${name}</option>`).join(""),
   WASM: packed(read(join(folder, "adaptiso.wasm"))),
   WORKER: packed(worker),
   NIIVUE: packed(niivue),

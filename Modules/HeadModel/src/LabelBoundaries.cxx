@@ -4,6 +4,8 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "FinishBoundaries.h"
 #include "Necks.h"
@@ -148,21 +150,36 @@ void requireSome(const FloatImage& more, const FloatImage* less, const char* tis
     throw InvalidInput(std::string("the image holds no label of the tissue ") + tissue);
 }
 
+const std::vector<std::pair<std::string, TissueLabels>>& presets() {
+    static const std::vector<std::pair<std::string, TissueLabels>> kPresets{
+        // SimNIBS 4: 1 white, 2 grey, 3 CSF, 4 bone, 5 scalp, 6 eyes, 7 compact and 8 spongy bone,
+        // 9 blood, 10 muscle
+        {"charm", {{1, 2}, {4, 7, 8}, {5, 6, 10}, false, {3, 9}}},
+        // SimNIBS 3: the first six alone
+        {"headreco", {{1, 2}, {4}, {5, 6}, false, {3}}},
+        // FreeSurfer's colour table: 165 Skull, 258 Head-ExtraCerebral, 259 Eye-Fluid; 24 CSF, 257
+        // CSF-ExtraCerebral
+        {"aseg", {{}, {165}, {258, 259}, true, {24, 257}}},
+        {"samseg", {{}, {165}, {258, 259}, true, {24, 257}}},
+        // class_map["total"] of TotalSegmentator 2
+        {"totalsegmentator", {{90}, {91}, {}, false, {}}},
+    };
+    return kPresets;
+}
+
 }  // namespace
 
+std::vector<std::string> tissuePresetNames() {
+    std::vector<std::string> names;
+    for (const auto& [name, labels] : presets()) names.push_back(name);
+    return names;
+}
+
 TissueLabels tissuePreset(std::string_view name) {
-    // SimNIBS 4 charm: 1 white, 2 grey, 3 CSF, 4 bone, 5 scalp, 6 eyes, 7 compact and 8 spongy
-    // bone, 9 blood, 10 muscle
-    if (name == "charm") return {{1, 2}, {4, 7, 8}, {5, 6, 10}, false, {3, 9}};
-    // SimNIBS 3 headreco: the first six alone
-    if (name == "headreco") return {{1, 2}, {4}, {5, 6}, false, {3}};
-    // FreeSurfer's colour table: 165 Skull, 258 Head-ExtraCerebral, 259 Eye-Fluid; 24 CSF, 257
-    // CSF-ExtraCerebral
-    if (name == "aseg" || name == "samseg") return {{}, {165}, {258, 259}, true, {24, 257}};
-    // class_map["total"] of TotalSegmentator 2
-    if (name == "totalsegmentator") return {{90}, {91}, {}, false, {}};
-    throw InvalidInput("tissuePreset: '" + std::string(name) +
-                       "' is none of charm, headreco, aseg, samseg, totalsegmentator");
+    for (const auto& [own, labels] : presets()) {
+        if (own == name) return labels;
+    }
+    throw InvalidInput("tissuePreset: '" + std::string(name) + "' is no preset");
 }
 
 HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels& tissues,

@@ -243,7 +243,7 @@ TEST(TissuePreset, NamesWhatItKnows) {
     EXPECT_EQ(tissuePreset("headreco").csf, (std::vector<std::int64_t>{3}));
     EXPECT_TRUE(tissuePreset("aseg").othersAreBrain);
     EXPECT_EQ(tissuePreset("totalsegmentator").skull, (std::vector<std::int64_t>{91}));
-    expectRefused([] { tissuePreset("freesurfer"); }, "none of charm, headreco, aseg");
+    expectRefused([] { tissuePreset("freesurfer"); }, "'freesurfer' is no preset");
 }
 
 TEST(TissuePreset, AsegTakesAllButSkullAndScalpForBrain) {

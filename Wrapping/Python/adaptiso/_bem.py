@@ -22,7 +22,7 @@ from ._quality import Check
 
 logger = logging.getLogger("adaptiso")
 
-PRESETS = ("charm", "headreco", "aseg", "samseg", "totalsegmentator")
+PRESETS = tuple(_adaptiso.tissue_presets())
 TISSUES = ("brain", "csf", "skull", "scalp")
 MONTAGES = ("10-20", "10-10", "10-05")
 #: From inside out; models have the last one to three of them, or all.
@@ -317,8 +317,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         and with four layers the brain's own surface.
     labels : image, optional
         A segmentation; `tissues` says of what.
-    tissues : {"charm", "headreco", "aseg", "samseg", "totalsegmentator"} or dict, optional
-        With `labels`: whose they are, or ``{"brain": [1, 2, 3], "skull": [4], "scalp": [5]}``; CSF
+    tissues : str or dict, optional
+        With `labels`: whose they are, by a preset of adaptiso-bem ("charm", ...), or ``{"brain": [1, 2, 3], "skull": [4], "scalp": [5]}``; CSF
         belongs to the brain, or with four layers is named apart: ``"csf": [3]``.
     head_mask : image, optional
         With `labels`: what is not 0 there lies within the skin; needed where no label is the

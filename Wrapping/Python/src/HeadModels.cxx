@@ -521,6 +521,7 @@ py::list placesOf(const HeadModelData& data, bool areElectrodes) {
 }  // namespace
 
 void declareHeadModels(py::module_& module) {
+    module.def("tissue_presets", &tissuePresetNames);
     py::class_<HeadModelData, std::shared_ptr<HeadModelData>>(module, "HeadModelData")
         .def_property_readonly("surfaces", &HeadModelData::surfaces)
         .def_property_readonly("has_model",

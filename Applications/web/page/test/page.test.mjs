@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { gunzipSync, gzipSync } from "node:zlib";
 import validator from "gltf-validator";
-import { arrived, balls, dicomSlice, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved,
+import { arrived, balls, choicesOf, dicomSlice, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved,
   textOf, writeNifti } from "./support.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -112,10 +112,17 @@ for (const browserName of kBrowsers) {
       assert.ok(seconds < 1, JSON.stringify(shown));
     });
 
+    it("offers the programs' formats and presets", async () => {
+      const offeredBy = (program, option) => new RegExp(`\\n  --${option} (\\S+)`).exec(native(folder, program, "--help").stdout)[1].split("|");
+      const formats = offeredBy("adaptiso-labels", "format").map((word) => `.${word}`);
+      for (const form of ["#format", "#simplify-format", "#labels-format"]) assert.deepEqual(await choicesOf(page, form), formats, form);
+      assert.deepEqual(await choicesOf(page, "#preset"), ["", ...offeredBy("adaptiso-bem", "preset")]);
+    });
+
     it("saves the bytes that the program writes, in every format", async () => {
       await give(page, "#scan-files", join(folder, "balls.nii"));
       await page.waitForFunction(() => document.body.dataset.scan === "balls.nii");
-      for (const format of [".stl", ".ply", ".obj", ".gii", ".vtp", ".surf", ".vtk", ".off"]) {
+      for (const format of await choicesOf(page, "#format")) {
         await page.select("#format", format);
         await press(page, "#mesh .go");
         assert.equal(await ended(page, "mesh"), "");
@@ -135,7 +142,7 @@ for (const browserName of kBrowsers) {
       assert.equal(info.totalTriangleCount, Number((await textOf(page, "#mesh .verdict")).split(" ")[0].replaceAll(",", "")));
       const { nodes } = JSON.parse(bytes.toString("utf8", 20, 20 + bytes.readUInt32LE(12)));
       assert.deepEqual(nodes[0].scale, [0.001, 0.001, 0.001]);
-      assert.equal(nodes[1].name, "balls.off");
+      assert.equal(nodes[1].name, "balls.tri");
     });
 
     it("makes the same bytes with every option of the form", async () => {
@@ -342,7 +349,7 @@ for (const browserName of kBrowsers) {
       await press(page, "#tab-labels");
       await give(page, "#labels-file", join(folder, "seg.nii"));
       await page.waitForFunction(() => document.body.dataset.scan === "seg.nii");
-      await page.select("#labels-format", "stl");
+      await page.select("#labels-format", ".stl");
       await press(page, "#labels .go");
       assert.equal(await ended(page, "labels", 600_000), "");
       const files = unzip(await saved(page, open.downloads, "#labels .saves .main", "regions.zip"));

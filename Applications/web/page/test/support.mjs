@@ -52,6 +52,7 @@ export async function ended(page, tab, timeout = 100_000) {
 }
 
 export const press = (page, selector) => page.$eval(selector, (element) => element.click());
+export const choicesOf = (page, select) => page.$$eval(`${select} option`, (options) => options.map(({ value }) => value));
 export const textOf = (page, selector) => page.$eval(selector, (element) => element.textContent);
 
 /** The file that a button saves. */
@@ -76,9 +77,9 @@ export async function arrived(downloads, name) {
 
 /** Runs a native program in `folder`. */
 export function native(folder, program, ...args) {
-  const { status, stderr, error } = spawnSync(join(kPrograms, program), args, { cwd: folder, encoding: "utf8" });
+  const { status, stdout, stderr, error } = spawnSync(join(kPrograms, program), args, { cwd: folder, encoding: "utf8" });
   if (error) throw error;
-  return { status, line: stderr.trim().split("\n").at(-1) };
+  return { status, stdout, line: stderr.trim().split("\n").at(-1) };
 }
 
 export function makeFolder() { return mkdtempSync(join(tmpdir(), "adaptiso-test-")); }

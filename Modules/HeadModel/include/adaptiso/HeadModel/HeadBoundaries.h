@@ -134,9 +134,9 @@ struct TissueLabels {
     std::vector<std::int64_t> csf{};  ///< within the inner skull, outside of the brain
 };
 
-/// "totalsegmentator" (task total: brain 90, skull 91, no scalp), "charm", "headreco" (SimNIBS), or
-/// "aseg" and "samseg" (FreeSurfer's aseg and SAMSEG's, whose skull is 165, whose scalp is 258 and
-/// 259, and whose CSF is 24 and 257). \throws InvalidInput another name
+/// The programs whose labels are known: "charm", "aseg", ...
+std::vector<std::string> tissuePresetNames();
+/// \throws InvalidInput  another name
 TissueLabels tissuePreset(std::string_view name);
 
 /// From a label map. Labels become parts of voxels by smoothing and interpolating each boundary's
