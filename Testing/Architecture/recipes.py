@@ -1,0 +1,113 @@
+"""The recipes of CONTRIBUTING.md, followed on a copy of a module's sources: a mesh format and a label table are three
+files each. What changed is compiled as the build folder compiles its like, and linked before the module's library
+into its unit tests.
+
+recipes.py SOURCE BUILD NINJA mesh|labels"""
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SKIPPED = 77
+RECIPES = Path(__file__).parent / "recipes"
+
+
+class Copy:
+    """A module's sources in a folder of their own."""
+
+    def __init__(self, source: Path, build: Path, ninja: str, module: str, folder: Path):
+        self.build, self.ninja, self.module, self.folder = build, ninja, module, folder
+        self.original = source / "Modules" / module
+        shutil.copytree(self.original, folder / module)
+        self.commands = {Path(entry["file"]): shlex.split(entry["command"])
+                         for entry in json.loads((build / "compile_commands.json").read_text())}
+
+    def add(self, name: str) -> None:
+        shutil.copy(RECIPES / name, self.folder / self.module / "src" / name)
+
+    def insert(self, name: str, line: str, before: str) -> None:
+        path = self.folder / self.module / name
+        text = path.read_text()
+        assert before in text, f"{name} lacks {before!r}"
+        path.write_text(text.replace(before, line + before, 1))
+
+    def touched(self) -> list:
+        return sorted(str(path.relative_to(self.folder / self.module)) for path in (self.folder / self.module).rglob("*")
+                      if path.is_file() and not same(path, self.original / path.relative_to(self.folder / self.module)))
+
+    def compile(self, file: Path, like: Path) -> str:
+        words = list(self.commands[like])
+        output = str(self.folder / (file.stem + ".o"))
+        words[words.index("-o") + 1] = output
+        words[words.index("-c") + 1] = str(file)
+        words = [word for word in words if "ccache" not in word]
+        subprocess.run([*words, "-I", str(self.folder / self.module / "src")], check=True, cwd=self.build)
+        return output
+
+    def run_tests(self, objects: list, only: str) -> None:
+        target, library = f"test{self.module}", f"libadaptiso{self.module}.a"
+        # " : && c++ ... -o test ... && : "
+        commands = subprocess.run([self.ninja, "-t", "commands", target], cwd=self.build, text=True, check=True,
+                                  capture_output=True).stdout.splitlines()
+        link = shlex.split(commands[-1].split("&&")[1])
+        at = next(n for n, word in enumerate(link) if word.endswith(library))
+        link[at:at] = objects
+        program = str(self.folder / target)
+        link[link.index("-o") + 1] = program
+        subprocess.run(link, check=True, cwd=self.build)
+        tests = subprocess.run([program, f"--gtest_filter={only}", "--gtest_brief=1"], cwd=self.folder, text=True,
+                               capture_output=True, env={**os.environ, "ADAPTISO_RENEW_PAGES": ""})
+        print(tests.stdout[-4000:])
+        assert tests.returncode == 0 and " 0 tests ran" not in tests.stdout, tests.stdout[-4000:]
+
+
+def same(a: Path, b: Path) -> bool:
+    return b.exists() and a.read_bytes() == b.read_bytes()
+
+
+def mesh(copy: Copy) -> list:
+    copy.add("Plain.cxx")
+    copy.insert("src/Formats.cxx", "extern const Codec kPlainCodec;\n", "extern const Codec kVtkXmlCodec")
+    copy.insert("src/Formats.cxx", 'constexpr Extensions kPlain = {".plain"};\n', "constexpr Extensions kOpenMeeg")
+    copy.insert("src/Formats.cxx", '{"Plain", kPlain, &meshio::kPlainCodec, Text, Ras, no, yes, yes, no, no, no, no, yes, kInt32},\n',
+                "    // read alone")
+    copy.insert("CMakeLists.txt", "    src/Plain.cxx\n", "    src/Ply.cxx")
+    sources = copy.folder / copy.module / "src"
+    like = copy.original / "src" / "Formats.cxx"
+    copy.run_tests([copy.compile(sources / name, like) for name in ("Plain.cxx", "Formats.cxx")],
+                   "*/plain*:MeshFormats.*:MeshFile.*:EveryFile.*:-*OfTheirPage")
+    return copy.touched()
+
+
+def labels(copy: Copy) -> list:
+    copy.add("ListedTables.cxx")
+    copy.insert("src/LabelTable.cxx", "extern const TableCodec kListedTables;\n", "extern const TableCodec kDelimitedTables")
+    copy.insert("src/LabelTable.cxx", '{"listed names", {".listed"}, &kListedTables, "names in their order"},\n',
+                '    {"FreeSurfer, MRtrix"')
+    copy.insert("CMakeLists.txt", "    src/ListedTables.cxx\n", "    src/Rows.cxx")
+    sources = copy.folder / copy.module / "src"
+    like = copy.original / "src" / "LabelTable.cxx"
+    test = next(path for path in copy.commands if path.name == "LabelTableTest.cxx")
+    copy.run_tests([copy.compile(RECIPES / "ListedTablesTest.cxx", test),
+                    *(copy.compile(sources / name, like) for name in ("ListedTables.cxx", "LabelTable.cxx"))],
+                   "-*OfTheirPage")
+    return copy.touched()
+
+
+def main() -> int:
+    source, build, ninja, which = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3], sys.argv[4]
+    if not ninja.endswith("ninja") or not (build / "compile_commands.json").exists():
+        print("needs a build folder of ninja with compile_commands.json")
+        return SKIPPED
+    module, recipe = {"mesh": ("MeshIO", mesh), "labels": ("LabelNames", labels)}[which]
+    with tempfile.TemporaryDirectory() as folder:
+        touched = recipe(Copy(source, build, ninja, module, Path(folder)))
+    print(f"{len(touched)} files of the module touched: {', '.join(touched)}")
+    return 0 if len(touched) <= 3 else 1
+
+
+sys.exit(main())
