@@ -174,10 +174,11 @@ class NoThreads(AllPrograms):
 
     def limit(self):
         """What a user has who has no process left; root has no limit."""
-        resource.setrlimit(resource.RLIMIT_NPROC, (0, 0))
         if os.geteuid() == 0:
             os.setgid(self.NOBODY)
             os.setuid(self.NOBODY)
+        # after it: else it can't exec while this user has other processes
+        resource.setrlimit(resource.RLIMIT_NPROC, (0, 0))
 
     def test_one_does(self):
         for program in self.commands:

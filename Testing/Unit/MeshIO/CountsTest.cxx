@@ -88,8 +88,8 @@ TEST_P(CountOf, AFewBytesBehindTheEndAreAWarning) {
 
 INSTANTIATE_TEST_SUITE_P(EveryFormat, CountOf,
                          ::testing::Range(0, static_cast<int>(meshFormats().size())),
-                         [](const auto& info) {
-                             std::string name(meshFormats()[info.param].extensions.front());
+                         [](const auto& parameter) {
+                             std::string name(meshFormats()[parameter.param].extensions.front());
                              return name.substr(1);
                          });
 
