@@ -9,46 +9,8 @@
 #include "Common/UsageWords.h"
 
 namespace adaptiso {
-namespace {
-
-/// A series' number from 1, or a UID: digits and dots.
-bool isSeries(const std::string& text) {
-    const bool hasDigits = text.find_first_of("123456789") != std::string::npos &&
-                           text.find_first_not_of("0123456789.") == std::string::npos &&
-                           text.front() != '.';
-    return hasDigits && text.size() <= 64;  // no UID is longer
-}
-
-}  // namespace
-
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& heading) {
-    const OptionGroup group(app, heading);
-    group.value(
-        "--series", "N|UID",
-        [&options](const std::string& text) {
-            if (!isSeries(text)) {
-                throw UsageError("--series " + shown(text) +
-                                 ": must be a number from the list of --list-series, from 1, "
-                                 "or a series' UID");
-            }
-            options.series = text;
-        },
-        "Which series of a DICOM input with several: its number in the list that "
-        "--list-series prints, or its UID");
-    group.count("--volume-index", options.volumeIndex, 0, kAnyCount,
-                "Which volume of a 4-D image (time points, echoes), counted from 0");
-    group.count("--level", options.level, 0, kAnyCount,
-                "Which resolution of an OME-Zarr or N5, 0 the finest (default)");
-    group.count("--channel", options.channel, 0, kAnyCount,
-                "Which channel of an OME-Zarr or N5 with several, counted from 0");
-    group.count("--time", options.timePoint, 0, kAnyCount,
-                "Which time point of an OME-Zarr or N5 with several, counted from 0");
-    group.flag("--refuse-missing-chunks", options.refusesMissingChunks,
-               "Refuse a Zarr in which chunks are missing; else the fill value stands for them, "
-               "with a warning");
-    group.flag("--resample-slices", options.resampleSlices,
-               "Blend unevenly spaced DICOM slices linearly onto even steps, in place of "
-               "refusing them");
+    OptionGroup(app, heading).rows(readOptions(), options);
 }
 
 ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& options) {
@@ -66,9 +28,8 @@ CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOpt
     const OptionGroup group(app, heading);
     CLI::Option* const option = group.text("--volume", "IMG", volume, description);
     declareReadOptions(app, options, heading);
-    for (const char* const name : {"--series", "--volume-index", "--level", "--channel", "--time",
-                                   "--refuse-missing-chunks", "--resample-slices"}) {
-        app.get_option(name)->needs(option);
+    for (const auto& row : readOptions()) {
+        app.get_option("--" + std::string(row.facts.name))->needs(option);
     }
     return option;
 }

@@ -17,8 +17,7 @@ struct ImageOptions {
     bool showsPhi = false;     ///< either tells what may identify the patient too
 };
 
-/// Adds --series, --volume-index, --resample-slices, and those of Zarr (--level, --channel, --time,
-/// --refuse-missing-chunks). Large images are mapped.
+/// Adds readOptions().
 void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& heading);
 
 /// Reads an image as readVolume() does. If the file is a surface, the error says so. Refuses
@@ -31,7 +30,7 @@ ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& optio
 CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOptions& options,
                            const std::string& description, const std::string& heading);
 
-/// Adds --series, --volume-index, --resample-slices, --list-series, --info and --show-phi.
+/// Adds readOptions(), --list-series, --info and --show-phi.
 void declareImageOptions(CLI::App& app, ImageOptions& options, const std::string& heading);
 
 /// Lists the series of `input` on stdout: as text, or as JSON on stdout or in a file, as `common`

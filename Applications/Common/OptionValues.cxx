@@ -58,20 +58,6 @@ std::string causeOf(const std::string& text) {
 
 }  // namespace
 
-std::string toWords(const NumberRule& rule) {
-    std::string text = "a number";
-    if (rule.least && rule.isAbove) text += " above " + formatNumber(*rule.least);
-    if (rule.least && rule.most && !rule.isAbove) {
-        text += " from " + formatNumber(*rule.least) + " to " + formatNumber(*rule.most);
-    } else if (rule.least && !rule.isAbove) {
-        text += ", " + formatNumber(*rule.least) + " or more";
-    } else if (rule.most) {
-        text += ", at most " + formatNumber(*rule.most);
-    }
-    if (!rule.least && !rule.most) text = "a finite number";
-    return rule.unit.empty() ? text : text + ", in " + rule.unit;
-}
-
 void refuseValue(const std::string& option, const std::string& text, const std::string& rule) {
     const std::string cause = causeOf(text);
     throw UsageError(option + " " + shown(text) + ": " + cause + (cause.empty() ? "" : "; ") +
@@ -80,10 +66,7 @@ void refuseValue(const std::string& option, const std::string& text, const std::
 
 double parseNumber(const std::string& option, const std::string& text, const NumberRule& rule) {
     const std::optional<double> value = parseFiniteNumber(text);
-    const bool isGood = value && (!rule.least || *value >= *rule.least) &&
-                        (!rule.isAbove || *value > *rule.least) &&
-                        (!rule.most || *value <= *rule.most);
-    if (!isGood) refuseValue(option, text, toWords(rule));
+    if (!value || !rule.allows(*value)) refuseValue(option, text, toWords(rule));
     return *value;
 }
 
@@ -95,11 +78,7 @@ std::int64_t parseCount(const std::string& option, const std::string& text, std:
     const char* const end = digits.data() + digits.size();
     const auto [last, error] = std::from_chars(digits.data(), end, value);
     if (error == std::errc{} && last == end && value >= least && value <= most) return value;
-    const bool isBounded = most < kAnyCount;
-    refuseValue(option, text,
-                "a whole number" +
-                    (isBounded ? " from " + std::to_string(least) + " to " + std::to_string(most)
-                               : ", " + std::to_string(least) + " or more"));
+    refuseValue(option, text, countRule(least, most));
 }
 
 std::size_t parseChoice(const std::string& option, const std::string& text,
@@ -143,11 +122,40 @@ CLI::Option* OptionGroup::values(const std::string& name, const std::string& val
         ->group(heading_);
 }
 
+CLI::Option* OptionGroup::row(const OptionFacts& facts, OptionKind kind,
+                              const std::function<void(const OptionValue&)>& take) const {
+    const std::string name = "--" + std::string(facts.name), help = helpText(facts, kind);
+    if (kind == OptionKind::Flag)
+        return flag(
+            name, [take] { take(true); }, help);
+    const std::vector<std::string> words(facts.words.begin(), facts.words.end());
+    const auto read = [=](const std::string& text) {
+        if (kind == OptionKind::Number) {
+            take(parseNumber(name, text, facts.rule));
+        } else if (kind == OptionKind::Count) {
+            take(parseCount(name, text, 0, kAnyCount));
+        } else if (kind == OptionKind::Choice) {
+            take(words[parseChoice(name, text, words)]);
+        } else if (facts.isUsable == nullptr || facts.isUsable(text)) {
+            take(text);
+        } else {
+            throw UsageError(name + " " + shown(text) + ": must be " + std::string(facts.textRule));
+        }
+    };
+    return value(name, words.empty() ? std::string(facts.valueName) : choiceName(words), read,
+                 help);
+}
+
 void OptionGroup::refused(const std::string& name, const std::string& reason) const {
     const auto refuse = [reason](const std::vector<std::string>&) { throw UsageError(reason); };
     app_.add_option_function<std::vector<std::string>>(name, refuse)
         ->expected(0, 1)
         ->group(heading_);
+}
+
+void requireOneCount(const SimplifyAims& aims) {
+    if (!aims.maxTriangles || !aims.reduction) return;
+    throw UsageError("--triangles and --reduction: are two ways to ask for one count");
 }
 
 CLI::Option* required(CLI::Option* option) {

@@ -1,29 +1,22 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "Common/RunApp.h"
+#include "adaptiso/Core/Options.h"
+#include "adaptiso/Core/SimplifyAims.h"
 
 namespace adaptiso {
-
-/// The range of a number that an option takes.
-struct NumberRule {
-    std::optional<double> least{};
-    bool isAbove = false;  ///< more than `least`
-    std::optional<double> most{};
-    std::string unit{};  ///< "mm", "degrees"; empty: none
-};
-
-/// "a number above 0, in mm", "a number from 0 to 40, in degrees"
-std::string toWords(const NumberRule& rule);
 
 /// Refuses the value of an option: "--smooth 0,5: decimals follow a point (0.5); must be `rule`".
 /// Where `text` is a number beyond what a double holds, that is said.
@@ -38,8 +31,6 @@ double parseNumber(const std::string& option, const std::string& text, const Num
 /// is not named. \throws UsageError
 std::int64_t parseCount(const std::string& option, const std::string& text, std::int64_t least,
                         std::int64_t most);
-
-inline constexpr std::int64_t kAnyCount = std::int64_t{1} << 53;
 
 /// The place in `words` of the value of an option. \throws UsageError
 std::size_t parseChoice(const std::string& option, const std::string& text,
@@ -71,6 +62,22 @@ public:
     CLI::Option* values(const std::string& name, const std::string& valueName,
                         const std::function<void(const std::vector<std::string>&)>& take,
                         const std::string& help) const;
+
+    /// The options of rows; what is typed is put into `owner`.
+    /// \param rows  must live as long as the app
+    /// \param only  names of those to take; empty: all
+    template <class Owner>
+    void rows(const Options<Owner>& rows, std::type_identity_t<Owner>& owner,
+              const std::vector<std::string_view>& only = {}) const {
+        for (const Option<Owner>& each : rows) {
+            if (!only.empty() && std::ranges::find(only, each.facts.name) == only.end()) continue;
+            row(each.facts, each.kind,
+                [&owner, &each](const OptionValue& value) { each.put(owner, value); });
+        }
+    }
+    /// The option of one row. \param take  gets its value, checked
+    CLI::Option* row(const OptionFacts& facts, OptionKind kind,
+                     const std::function<void(const OptionValue&)>& take) const;
 
     /// An option, with a value or without, that is refused with a reason.
     void refused(const std::string& name, const std::string& reason) const;
@@ -135,6 +142,9 @@ private:
     CLI::App& app_;
     std::string heading_;
 };
+
+/// \throws UsageError  a count and a share are given
+void requireOneCount(const SimplifyAims& aims);
 
 /// Makes an option or argument required. \return it
 CLI::Option* required(CLI::Option* option);

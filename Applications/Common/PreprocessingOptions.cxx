@@ -96,26 +96,13 @@ std::string optionOf(PreprocessStep step, const PreprocessOptions& options) {
 void declarePreprocessingOptions(CLI::App& app, PreprocessOptions& options,
                                  const std::string& heading) {
     const OptionGroup group(app, heading);
-    const NumberRule length{.least = 0, .isAbove = true, .unit = "mm"};
     group.value(
         "--crop", "I0:I1,J0:J1,K0:K1",
         [&options](const std::string& text) { options.crop = parseCrop(text); },
         "First keep these voxels only: indices from 0, the end not included; a bound left out "
         "is the image's border: 10:90,:,20:");
-    group.number(
-        "--smooth", "SIGMA_MM", options.smoothSigmaMm, length,
-        "Then smooth with a Gaussian of this standard deviation, the same in every direction "
-        "in space");
-    CLI::Option* const resample = group.number("--resample", "MM", options.resampleMm, length,
-                                               "Then resample to cubic voxels with sides of MM mm");
-    group
-        .choice<Interpolation>("--interpolation", options.interpolation,
-                               {{"linear", Interpolation::Linear},
-                                {"bspline", Interpolation::BSpline},
-                                {"nearest", Interpolation::Nearest}},
-                               "How --resample finds values between voxels: linear (default), "
-                               "bspline (cubic), or nearest (for labels)")
-        ->needs(resample);
+    group.rows(filterOptions(), options);
+    app.get_option("--interpolation")->needs(app.get_option("--resample"));
 }
 
 Preprocessed preprocessImage(Volume volume, const PreprocessOptions& options,

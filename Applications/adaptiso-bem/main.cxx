@@ -168,15 +168,7 @@ void declareHead(CLI::App& app, BemOptions& options) {
                         [&](const auto& gaps) { return setMinGaps(model, gaps); });
         },
         "Least thickness of skull, scalp and (with --layers 4) CSF, guaranteed (default: 2,2,1)");
-    for (const BemNumber& number : bemNumbers()) {
-        NumberRule rule{.unit = std::string(number.unit)};
-        if (number.most > 0) rule = {.least = 0, .most = number.most, .unit = rule.unit};
-        std::string valueName = rule.unit;
-        for (char& c : valueName)
-            c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-        group.number("--" + std::string(number.name), valueName, model.boundaries.*number.value,
-                     rule, std::string(number.help));
-    }
+    group.rows(boundaryOptions(), model.boundaries);
 }
 
 void declareSurfaces(CLI::App& app, BemOptions& options) {

@@ -8,18 +8,12 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ParseJson.h"
+#include "adaptiso/Json/OptionsJson.h"
 
 namespace adaptiso::giant {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kSchema = "adaptiso-giant-plan/1";
-
-template <class T>
-Json orNull(const std::optional<T>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
 
 Json vectorJson(const Vec3& v) {
     return {v.x, v.y, v.z};
@@ -37,14 +31,7 @@ Json identityJson(const GiantPlan& plan) {
     return {{"schema", kSchema},
             {"version", plan.version},
             {"input", plan.input.string()},
-            {"read",
-             {{"level", orNull(plan.read.level)},
-              {"channel", orNull(plan.read.channel)},
-              {"time", orNull(plan.read.timePoint)},
-              {"volumeIndex", orNull(plan.read.volumeIndex)},
-              {"series", orNull(plan.read.series)},
-              {"resampleSlices", plan.read.resampleSlices},
-              {"refuseMissingChunks", plan.read.refusesMissingChunks}}},
+            {"read", valuesJson(readOptions(), plan.read)},
             {"format", plan.format},
             {"sizeVoxels", plan.geometry.size},
             {"originMm", vectorJson(plan.geometry.originMm)},
@@ -67,10 +54,6 @@ std::int64_t countOf(const Json& json) {
     return static_cast<std::int64_t>(json.get_ref<const Json::number_unsigned_t&>());
 }
 
-std::optional<std::int64_t> countOrNone(const Json& json) {
-    return json.is_null() ? std::nullopt : std::optional(countOf(json));
-}
-
 Vec3 vectorOf(const Json& json) {
     return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
@@ -82,13 +65,9 @@ GiantPlan planFrom(const Json& json) {
     plan.version = json.at("version").get<std::string>();
     plan.input = json.at("input").get<std::string>();
     const Json& read = json.at("read");
-    plan.read.level = countOrNone(read.at("level"));
-    plan.read.channel = countOrNone(read.at("channel"));
-    plan.read.timePoint = countOrNone(read.at("time"));
-    plan.read.volumeIndex = countOrNone(read.at("volumeIndex"));
-    if (!read.at("series").is_null()) plan.read.series = read.at("series").get<std::string>();
-    plan.read.resampleSlices = read.at("resampleSlices");
-    plan.read.refusesMissingChunks = read.at("refuseMissingChunks");
+    for (const auto& row : readOptions()) {
+        row.put(plan.read, optionValue(read.at(row.facts.key), row.kind));
+    }
     plan.format = json.at("format").get<std::string>();
     for (std::size_t a = 0; a < 3; ++a) {
         plan.geometry.size[a] = countOf(json.at("sizeVoxels").at(a));

@@ -27,7 +27,7 @@ struct GiantOptions {
     ReadOptions read;
     std::optional<double> isovalue;
     Method method = Method::Adaptive;
-    std::optional<double> maxErrorMm;
+    SimplifyAims aims;        ///< maxErrorMm alone
     std::int64_t side = 384;  ///< of a tile, cells
 
     std::filesystem::path output, preview;  ///< empty: none

@@ -77,9 +77,9 @@ GiantPlan planOf(const GiantOptions& options) {
     plan.method = options.method;
     plan.side = options.side;
     if (plan.isAdaptive()) {
-        plan.leavesNoise = !options.maxErrorMm;
-        plan.maxErrorMm = options.maxErrorMm.value_or(AdaptiveOptions::kDefaultMaxErrorVoxels *
-                                                      narrowestSpacingMm(plan.geometry));
+        plan.leavesNoise = !options.aims.maxErrorMm;
+        plan.maxErrorMm = options.aims.maxErrorMm.value_or(AdaptiveOptions::kDefaultMaxErrorVoxels *
+                                                           narrowestSpacingMm(plan.geometry));
     }
     requireTileable(plan);
     plan.warnings = image.warnings();

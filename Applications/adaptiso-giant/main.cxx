@@ -80,10 +80,7 @@ void declarePlanned(CLI::App& app, GiantOptions& options) {
         [&options](const std::string& text) { options.method = methodOf(text); },
         "adaptive: few triangles within a distance of the surface of marching cubes; mc: that "
         "surface (default: adaptive). The others need the whole volume");
-    planned.number(
-        "--max-error", "MM", options.maxErrorMm, {.least = 0, .isAbove = true, .unit = "mm"},
-        "Of method adaptive: no point is farther than MM from the surface of marching cubes, "
-        "nor the other way round (default: 0.15 of the least distance of sample planes)");
+    planned.rows(aimOptions(AimedSurface::OfScan), options.aims, {"max-error"});
     planned.count("--tile", options.side, TileCut::kStep, TileCut::kLargestSide,
                   "Cells a side of a tile, a multiple of 32 (default: 384)");
     declareReadOptions(app, options.read, kPlanned);
@@ -114,15 +111,15 @@ void checkCombinations(const CLI::App& app, const GiantOptions& options) {
     require(!plans || options.isovalue.has_value(), "--iso is missing: the isovalue");
     require(options.side % TileCut::kStep == 0,
             "--tile " + std::to_string(options.side) + ": must be a multiple of 32");
-    require(!options.maxErrorMm || options.method == Method::Adaptive,
+    require(!options.aims.maxErrorMm || options.method == Method::Adaptive,
             "--max-error: is for the method adaptive");
     require(
         options.ids.empty() || options.step == GiantStep::Tile || options.step == GiantStep::Seam,
         "ID: only the steps tile and seam take any");
-    for (const char* name : {"--input", "--iso", "--method", "--max-error", "--tile", "--level",
-                             "--channel", "--time", "--volume-index"}) {
-        require(plans || !isGiven(app, name),
-                std::string(name) + ": the plan says it; give it to plan or run");
+    std::vector<std::string> planned{"--input", "--iso", "--method", "--max-error", "--tile"};
+    for (const auto& row : readOptions()) planned.push_back("--" + std::string(row.facts.name));
+    for (const std::string& name : planned) {
+        require(plans || !isGiven(app, name), name + ": the plan says it; give it to plan or run");
     }
     for (const char* name :
          {"--output", "--preview", "--report", "--pictures", "--deface-report", "--coordinates"}) {

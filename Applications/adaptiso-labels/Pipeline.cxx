@@ -134,10 +134,7 @@ void checkConductivities(const LabelsRun& run) {
 LabelComplex extract(const VolumeView& map, LabelsRun& run) {
     const LabelsOptions& options = run.options;
     LabelOptions extraction;
-    extraction.maxErrorMm = options.maxErrorMm;
-    extraction.maxTriangles = options.maxTriangles;
-    extraction.reduction = options.reduction;
-    extraction.minAngleDeg = options.minAngleDeg;
+    static_cast<SimplifyAims&>(extraction) = options.aims;
     extraction.progress = run.progress.callback();
     if (!options.labels.empty()) extraction.labels = labelsOf(run.regions);
     LabelResult result =
@@ -163,7 +160,7 @@ void measure(const LabelComplex& complex, LabelsRun& run) {
 void warnOfCount(LabelsRun& run) {
     const std::optional<std::int64_t>& wanted = run.statistics.wantedTriangles;
     const std::int64_t triangles = run.statistics.mapTriangles;
-    if (!wanted || triangles <= *wanted || run.options.maxErrorMm) return;
+    if (!wanted || triangles <= *wanted || run.options.aims.maxErrorMm) return;
     run.warnings.push_back(countMissed(
         baseName(run.options.input), "triangles in its walls", triangles, *wanted,
         std::string("all regions, pieces and junctions") +

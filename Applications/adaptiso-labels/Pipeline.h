@@ -28,11 +28,8 @@ struct LabelsOptions {
     std::filesystem::path names;  ///< a table; empty: one is looked for beside the input
     LabelRanges labels;           ///< regions that are wanted; empty: all
     std::vector<LabelMerge> merges;
-    std::optional<double> maxErrorMm;
-    std::optional<std::int64_t> maxTriangles;
-    std::optional<double> reduction;
+    SimplifyAims aims;
     MesherOptions tetrahedra;
-    double minAngleDeg = 0;
     bool writesLayers = false;               ///< the walls for OpenMEEG
     std::map<Label, double> conductivities;  ///< of regions, S/m; empty: none are written
     std::filesystem::path output;  ///< a folder; empty: "<input>-labels" in the current one

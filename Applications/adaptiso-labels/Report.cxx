@@ -12,6 +12,7 @@
 #include "Run.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/TetrahedraJson.h"
+#include "adaptiso/Json/OptionsJson.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::labels {
@@ -42,15 +43,13 @@ Json optionsJson(const LabelsOptions& options) {
     for (const auto& [label, value] : options.conductivities) {
         conductivities[std::to_string(label)] = value;
     }
-    return {{"labels", options.labels.empty() ? Json(nullptr) : rangesJson(options.labels)},
-            {"merges", merges},
-            {"maxErrorMm", orNull(options.maxErrorMm)},
-            {"maxTriangles", orNull(options.maxTriangles)},
-            {"reduction", orNull(options.reduction)},
-            {"minAngleDeg", options.minAngleDeg},
-            {"layers", options.writesLayers},
-            {"conductivities", conductivities},
-            {"strict", options.common.isStrict}};
+    Json json{{"labels", options.labels.empty() ? Json(nullptr) : rangesJson(options.labels)},
+              {"merges", merges}};
+    json.update(valuesJson(aimOptions(AimedSurface::Walls), options.aims));
+    json["layers"] = options.writesLayers;
+    json["conductivities"] = conductivities;
+    json["strict"] = options.common.isStrict;
+    return json;
 }
 
 Json regionJson(const Region& region) {

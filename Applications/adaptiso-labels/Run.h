@@ -98,9 +98,9 @@ struct LabelsRun : ProgramRun {
 
     /// The bound that the walls must keep; empty with a count alone and at full resolution.
     std::optional<double> askedBoundMm() const {
-        if (options.maxErrorMm == 0.0) return std::nullopt;
-        if (options.maxErrorMm || options.maxTriangles || options.reduction) {
-            return options.maxErrorMm;
+        if (options.aims.maxErrorMm == 0.0) return std::nullopt;
+        if (options.aims.maxErrorMm || options.aims.maxTriangles || options.aims.reduction) {
+            return options.aims.maxErrorMm;
         }
         return LabelOptions::kDefaultMaxErrorVoxels * leastPlaneDistanceMm(map.geometry);
     }

@@ -51,9 +51,7 @@ void checkCombinations(const LabelsOptions& options) {
     if (!options.volume.empty() && !options.report.isWanted()) {
         throw UsageError("--volume: is shown on the page; it needs --report or --pictures");
     }
-    if (options.maxTriangles && options.reduction) {
-        throw UsageError("--triangles and --reduction: are two ways to ask for one count");
-    }
+    requireOneCount(options.aims);
     if (options.writesLayers && !options.labels.empty()) {
         throw UsageError(
             "--layers: needs all regions, as each wall lies between two of them; "
@@ -114,23 +112,6 @@ void declareRegions(CLI::App& app, LabelsOptions& options) {
         "the "
         "first of them; "
         "may be given several times");
-}
-
-void declareWalls(CLI::App& app, LabelsOptions& options) {
-    const OptionGroup walls(app, kWalls);
-    walls.number(
-        "--max-error", "MM", options.maxErrorMm, {.least = 0, .unit = "mm"},
-        "No point of a wall at full resolution is farther than MM from the same wall here, "
-        "nor the other way round; 0 writes the full resolution (default, unless a count is "
-        "given: 0.15 of the least distance between planes of voxels)");
-    walls.count("--triangles", options.maxTriangles, 0, kAnyCount,
-                "As near to the full resolution as N triangles in all walls together can be");
-    walls.number("--reduction", "F", options.reduction, {.least = 0, .most = 1},
-                 "The share F of the full resolution's triangles to drop, 0 to 1");
-    walls.number("--min-angle", "DEG", options.minAngleDeg,
-                 {.least = 0, .most = 40, .unit = "degrees"},
-                 "Make no angle below DEG (0 to 40), at the price of more triangles: for meshers "
-                 "(default: 0)");
 }
 
 void declareLayers(CLI::App& app, LabelsOptions& options) {
@@ -203,7 +184,7 @@ Program labelsProgram() {
 void declareLabelsOptions(CLI::App& app, LabelsOptions& options) {
     declareInput(app, options);
     declareRegions(app, options);
-    declareWalls(app, options);
+    OptionGroup(app, kWalls).rows(aimOptions(AimedSurface::Walls), options.aims);
     declareMesherOptions(app, options.tetrahedra,
                          "tetrahedra.msh, tetrahedra-4.1.msh, tetrahedra.vtu and tetrahedra.dgf",
                          kTetrahedra);

@@ -171,7 +171,7 @@ TriangleMesh extract(const VolumeView& volume, const SpanSpaceIndex& index, Mesh
                      SurfaceSummary& summary) {
     const MeshOptions& options = run.options;
     TriangleMesh mesh = run.stage("extract", [&] {
-        ExtractionOptions extract = options.extraction();
+        ExtractionOptions extract = options.extraction;
         extract.isovalue = summary.isovalue;
         extract.computeNormals = summary.format->holdsNormals;
         extract.progress = run.progress.callback();
@@ -206,7 +206,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     // tkRAS and voxel indices are those of the image that the user has
     write.volume = frameVolume(summary.frame, run.input.geometry);
     const FileDigits digits{summary.format, lpsToFrame(write.frame, write.volume),
-                            askedBoundMm(options.extraction(), volume.geometry())};
+                            askedBoundMm(options.extraction, volume.geometry())};
     if (options.verifies) {
         summary.verification = run.stage(
             "verify", [&] { return verify(volume, index, mesh, digits, options, summary); });
@@ -216,7 +216,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     FinishOptions finish;
     finish.selection = options.selection;
     finish.digits = digits;
-    finish.method = options.method;
+    finish.method = options.extraction.method;
     finish.border = options.index.border;
     finish.countsCrossings = options.checksCrossings;
     finish.maxCrossingPairs = isShown ? kMaxShownPairs : 0;
@@ -246,7 +246,8 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
 /// Where a count could not be met. With --max-error as well the bound may end it before: that was
 /// asked for.
 std::optional<Warning> countWarning(const SurfaceSummary& surface, const MeshOptions& options) {
-    if (surface.countMet().value_or(true) || options.adaptive.maxErrorMm) return std::nullopt;
+    if (surface.countMet().value_or(true) || options.extraction.adaptive.maxErrorMm)
+        return std::nullopt;
     const bool isOpen = options.index.border == Border::Open;
     return countMissed(
         surface.file.filename().string(), "triangles", surface.topology.triangles,
@@ -260,7 +261,7 @@ const ImageGeometry& meshedGeometry(const MeshRun& run) {
 }
 
 std::optional<Warning> digitsWarning(const SurfaceSummary& surface, const MeshRun& run) {
-    const auto asked = askedBoundMm(run.options.extraction(), meshedGeometry(run));
+    const auto asked = askedBoundMm(run.options.extraction, meshedGeometry(run));
     if (!asked) return std::nullopt;
     return roundingWarning(surface.file.filename().string(), *surface.errorBoundMm(), *asked,
                            surface.roundingMm.value_or(0), *surface.format);
@@ -276,8 +277,8 @@ std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
 }
 
 std::optional<Warning> sizeWarning(const SurfaceSummary& surface, const MeshOptions& options) {
-    if (!options.adaptive.maxErrorMm) return std::nullopt;
-    return boundOverSize("--max-error", *options.adaptive.maxErrorMm, surface.diagonalMm,
+    if (!options.extraction.adaptive.maxErrorMm) return std::nullopt;
+    return boundOverSize("--max-error", *options.extraction.adaptive.maxErrorMm, surface.diagonalMm,
                          surface.file.filename().string());
 }
 
@@ -285,7 +286,7 @@ std::optional<Warning> sizeWarning(const SurfaceSummary& surface, const MeshOpti
 void warnOfSurfaces(MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
         auto noise =
-            noiseWarning(surface, run.options.extraction(), meshedGeometry(run), "--max-error ");
+            noiseWarning(surface, run.options.extraction, meshedGeometry(run), "--max-error ");
         if (noise) noise->file = surface.file.filename().string();
         for (const auto& warning :
              {countWarning(surface, run.options), digitsWarning(surface, run),

@@ -33,10 +33,7 @@ struct MeshOptions {
     PreprocessOptions preprocessing;
     std::vector<IsovalueChoice> isovalues;
     std::filesystem::path output;  ///< empty: named after the input, in the current folder
-    Method method = Method::Adaptive;
-    bool adjustVertices = false;
-    bool mergeWithinBlocks = false;
-    AdaptiveOptions adaptive;
+    ExtractionOptions extraction;  ///< of every surface, without isovalue and progress
     IndexOptions index;
     ComponentSelection selection;
     std::optional<CoordinateFrame> frame;  ///< empty: the output format's own
@@ -49,15 +46,6 @@ struct MeshOptions {
     bool isBatch() const {
         return batch.isAsked() || inputs.size() > 1 || holdsName(output) ||
                holdsName(report.page) || holdsName(report.pictures);
-    }
-    /// Options for every surface, without isovalue, normals and progress.
-    ExtractionOptions extraction() const {
-        ExtractionOptions options;
-        options.method = method;
-        options.discretized.adjustVertices = adjustVertices;
-        options.discretized.mergeWithinBlocks = mergeWithinBlocks;
-        options.adaptive = adaptive;
-        return options;
     }
     /// Whether the selection of pieces needs closed surfaces.
     bool needsClosedSurfaces() const {

@@ -34,7 +34,7 @@ Json preprocessedJson(const MeshRun& run) {
 }
 
 Json optionsJson(const MeshOptions& options) {
-    Json json = surfaceOptionsJson(options.extraction(), options.index, options.selection);
+    Json json = surfaceOptionsJson(options.extraction, options.index, options.selection);
     json["threads"] = orNull(options.common.threads);
     json["strict"] = options.common.isStrict;
     return json;
@@ -45,7 +45,7 @@ Json indexJson(const IndexSummary& index) {
 }
 
 Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
-    Json json = surfaceJson(surface, run.options.method, run.options.index.blockSize);
+    Json json = surfaceJson(surface, run.options.extraction.method, run.options.index.blockSize);
     json["output"] = {{"file", surface.file.filename().string()},
                       {"format", surface.format->name},
                       {"coordinates", frameWord(surface.frame)},
@@ -100,7 +100,7 @@ void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& s
     if (!surface.countMet().value_or(true)) {
         out << "  " << formatCount(*surface.statistics.wantedTriangles)
             << " triangles were asked for; "
-            << (run.options.adaptive.maxErrorMm
+            << (run.options.extraction.adaptive.maxErrorMm
                     ? "the bound of --max-error does not allow as few\n"
                     : "keeping all its pieces and holes left little to gain\n");
     }
@@ -159,10 +159,10 @@ void addOptions(const MeshRun& run, Report& report) {
             {"Isovalue", formatNumber(surface.isovalue) +
                              (surface.isAutomatic ? " (chosen by Otsu's method)" : "")});
     }
-    report.options.push_back({"Method", std::string(toString(options.method))});
-    if (options.adaptive.maxErrorMm) {
+    report.options.push_back({"Method", std::string(toString(options.extraction.method))});
+    if (options.extraction.adaptive.maxErrorMm) {
         report.options.push_back(
-            {"Largest error", formatNumber(*options.adaptive.maxErrorMm) + " mm"});
+            {"Largest error", formatNumber(*options.extraction.adaptive.maxErrorMm) + " mm"});
     }
     report.options.push_back(
         {"At the image's border", options.index.border == Border::Closed ? "closed" : "open"});

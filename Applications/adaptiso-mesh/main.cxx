@@ -61,21 +61,22 @@ void checkCombinations(const MeshOptions& options) {
         throw UsageError(
             "--min-volume and --fill-cavities need closed surfaces, not --border open");
     }
-    if (options.adjustVertices && options.method != Method::DiscretizedMarchingCubes) {
+    if (options.extraction.discretized.adjustVertices &&
+        options.extraction.method != Method::DiscretizedMarchingCubes) {
         throw UsageError(
             "--adjust-vertices: is for --method dmc; no other method has its vertices at "
             "midpoints");
     }
-    const bool isForAdaptive = !(options.adaptive == AdaptiveOptions{}) || options.verifies;
-    if (isForAdaptive && options.method != Method::Adaptive) {
+    const bool isForAdaptive =
+        !(options.extraction.adaptive == AdaptiveOptions{}) || options.verifies;
+    if (isForAdaptive && options.extraction.method != Method::Adaptive) {
         throw UsageError(
             "--max-error, --triangles, --reduction, --min-angle and --verify are for --method "
             "adaptive");
     }
-    if (options.adaptive.maxTriangles && options.adaptive.reduction) {
-        throw UsageError("--triangles and --reduction: are two ways to ask for one count");
-    }
-    if (options.mergeWithinBlocks && options.method != Method::DiscretizedMarchingCubes) {
+    requireOneCount(options.extraction.adaptive);
+    if (options.extraction.discretized.mergeWithinBlocks &&
+        options.extraction.method != Method::DiscretizedMarchingCubes) {
         throw UsageError(
             "--merge-within-blocks: is for --method dmc; no other method can merge within blocks");
     }
@@ -91,24 +92,6 @@ void declareInput(CLI::App& app, MeshOptions& options) {
     declarePreprocessingOptions(app, options.preprocessing, kPreprocessing);
 }
 
-void declareAdaptive(CLI::App& app, AdaptiveOptions& options) {
-    const OptionGroup surface(app, kSurface);
-    surface.number(
-        "--max-error", "MM", options.maxErrorMm, {.least = 0, .isAbove = true, .unit = "mm"},
-        "Method adaptive: no point of the surface of mc is farther than MM (a number above "
-        "0) from the mesh, nor the other way round (default, unless a count is given: 0.15 "
-        "of the least distance between planes of voxels)");
-    surface.count("--triangles", options.maxTriangles, 0, kAnyCount,
-                  "Method adaptive: simplify to N triangles, as close to the surface as the method "
-                  "gets; of the pieces that are kept");
-    surface.number("--reduction", "F", options.reduction, {.least = 0, .most = 1},
-                   "Method adaptive: the share F of mc's triangles to drop, 0 to 1");
-    surface.number("--min-angle", "DEG", options.minAngleDeg,
-                   {.least = 0, .most = 40, .unit = "degrees"},
-                   "Method adaptive: make no new angle below DEG, 0 to 40, at the price of more "
-                   "triangles (default: 0)");
-}
-
 void declareSurface(CLI::App& app, MeshOptions& options) {
     const OptionGroup surface(app, kSurface);
     surface.values(
@@ -118,59 +101,16 @@ void declareSurface(CLI::App& app, MeshOptions& options) {
         },
         "The isovalue: inside is where the image is >= V; auto lets Otsu's method choose. "
         "Give it several times for several surfaces");
-    surface.choice<Method>(
-        "--method", options.method,
-        {{"adaptive", Method::Adaptive},
-         {"boxes", Method::Boxes},
-         {"dmc", Method::DiscretizedMarchingCubes},
-         {"asc", Method::SkeletonClimbing},
-         {"mc", Method::MarchingCubes}},
-        "adaptive: few triangles within a stated distance of the surface, none "
-        "crossing another (default); "
-        "boxes: cubes of several sizes, merged where the surface is flat; "
-        "dmc: discretized marching cubes, coplanar facets between edge midpoints "
-        "merged; "
-        "asc: adaptive skeleton climbing, rectangular boxes, unmerged; "
-        "mc: marching cubes, every voxel at full resolution");
-    declareAdaptive(app, options.adaptive);
+    surface.rows(methodOptions(), options.extraction);
+    surface.rows(aimOptions(AimedSurface::OfScan), options.extraction.adaptive);
     surface.flag(
         "--verify", options.verifies,
         "Method adaptive: also check the result against the surface of mc, by other "
         "code than made it: crossings, pieces, their orientation, genus and sampled distance "
         "of the file's points. Takes long");
-    surface.flag("--adjust-vertices", options.adjustVertices,
-                 "Move the vertices of the method dmc from the midpoints to where the image "
-                 "reaches the isovalue");
-    surface.flag("--merge-within-blocks", options.mergeWithinBlocks,
-                 "Merge facets of the method dmc within blocks of --block-size voxels only");
-    surface.choice<int>(
-        "--block-size", options.index.blockSize, {{"2", 2}, {"4", 4}, {"8", 8}, {"16", 16}},
-        "Voxels a side of the index's blocks, and of the largest box of the methods boxes "
-        "and asc (default: 4)");
-    surface.choice<Border>(
-        "--border", options.index.border, {{"closed", Border::Closed}, {"open", Border::Open}},
-        "Where a surface meets the border of the image: closed there (default), or "
-        "left open");
-    surface.choice<BlockSearchKind>("--search", options.index.search,
-                                    {{"kdtree", BlockSearchKind::KdTree},
-                                     {"octree", BlockSearchKind::Octree},
-                                     {"linear", BlockSearchKind::Linear}},
-                                    "How the blocks that a surface touches are found: kd-tree over "
-                                    "their minima and maxima (default), octree, or a look at every "
-                                    "block. The surface is the same");
-}
-
-void declarePieces(CLI::App& app, MeshOptions& options) {
-    const OptionGroup pieces(app, kPieces);
-    pieces.flag("--fill-cavities", options.selection.fillCavities,
-                "Drop inner surfaces, and all that lies inside them");
-    pieces.number(
-        "--min-volume", "MM3", options.selection.minVolumeMm3, {.least = 0, .unit = "mm3"},
-        "Drop pieces with less than MM3 cubic millimetres of material, fill cavities with "
-        "less");
-    pieces.flag("--largest", options.selection.largestOnly,
-                "Keep the piece with the most material only (with --border open: the largest "
-                "area)");
+    surface.rows(discretizedOptions(), options.extraction.discretized);
+    surface.rows(indexOptions(), options.index);
+    OptionGroup(app, kPieces).rows(pieceOptions(), options.selection);
 }
 
 void declareOutput(CLI::App& app, MeshOptions& options) {
@@ -224,7 +164,6 @@ Program meshProgram() {
 void declareMeshOptions(CLI::App& app, MeshOptions& options) {
     declareInput(app, options);
     declareSurface(app, options);
-    declarePieces(app, options);
     declareOutput(app, options);
     declareBatchOptions(app, options.batch);
     declareCommonOptions(app, options.common, "no surface is then written, reports are");

@@ -9,6 +9,7 @@
 #include "Common/RunApp.h"
 #include "Run.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Json/OptionsJson.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
@@ -47,15 +48,13 @@ Json inputJson(const SimplifyRun& run) {
 }
 
 Json optionsJson(const SimplifyCommand& command) {
-    return {{"inputCoordinates", inputCoordinatesJson(command.inputCoordinates)},
-            {"maxErrorMm", orNull(command.aim.maxErrorMm)},
-            {"triangles", orNull(command.aim.maxTriangles)},
-            {"reduction", orNull(command.aim.reduction)},
-            {"minAngleDeg", number(command.aim.minAngleDeg)},
-            {"keepBorders", command.aim.keepBorders},
-            {"requireSound", command.requiresSound},
-            {"threads", orNull(command.common.threads)},
-            {"strict", command.common.isStrict}};
+    Json json{{"inputCoordinates", inputCoordinatesJson(command.inputCoordinates)}};
+    json.update(valuesJson(aimOptions(AimedSurface::Mesh), command.aim));
+    json.update(valuesJson(borderOptions(), command.aim));
+    json["requireSound"] = command.requiresSound;
+    json["threads"] = orNull(command.common.threads);
+    json["strict"] = command.common.isStrict;
+    return json;
 }
 
 Json outputJson(const SimplifyRun& run) {

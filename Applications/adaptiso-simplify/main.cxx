@@ -15,7 +15,7 @@ namespace adaptiso::simplifier {
 namespace {
 
 constexpr const char* kInput = "Input";
-constexpr const char* kAim = "Extent (at least one)";
+constexpr const char* kAim = "Extent (at least one of the first three)";
 constexpr const char* kKept = "Constraints";
 constexpr const char* kOutput = "Output";
 
@@ -23,9 +23,7 @@ void checkAim(const SimplifyOptions& aim) {
     if (!aim.maxErrorMm && !aim.maxTriangles && !aim.reduction) {
         throw UsageError("--max-error, --triangles or --reduction is missing: how far to simplify");
     }
-    if (aim.maxTriangles && aim.reduction) {
-        throw UsageError("--triangles and --reduction: are two ways to ask for one count");
-    }
+    requireOneCount(aim);
 }
 
 /// Checks options against each other.
@@ -68,25 +66,10 @@ void declareInput(CLI::App& app, SimplifyCommand& command) {
                "under their own names. May be given several times");
 }
 
-void declareAim(CLI::App& app, SimplifyOptions& aim) {
-    const OptionGroup group(app, kAim);
-    group.number("--max-error", "MM", aim.maxErrorMm, {.least = 0, .isAbove = true, .unit = "mm"},
-                 "No point of the surface is farther than MM (a number above 0, in the unit of its "
-                 "coordinates) from the result, nor the other way round");
-    group.count("--triangles", aim.maxTriangles, 0, kAnyCount,
-                "As near to the surface as N triangles can be");
-    group.number("--reduction", "F", aim.reduction, {.least = 0, .most = 1},
-                 "The share F of the triangles to drop, 0 to 1");
-}
-
-void declareKept(CLI::App& app, SimplifyCommand& command) {
+void declareAim(CLI::App& app, SimplifyCommand& command) {
+    OptionGroup(app, kAim).rows(aimOptions(AimedSurface::Mesh), command.aim);
     const OptionGroup kept(app, kKept);
-    kept.number("--min-angle", "DEG", command.aim.minAngleDeg,
-                {.least = 0, .most = 40, .unit = "degrees"},
-                "Make no new angle below DEG, 0 to 40, at the price of more triangles "
-                "(default: 0)");
-    kept.flag("--keep-borders", command.aim.keepBorders,
-              "Leave the points of open borders where they are, to the bit");
+    kept.rows(borderOptions(), command.aim);
     kept.flag("--require-sound", command.requiresSound,
               "Refuse (exit code 1, no surface written) a surface that is not closed, "
               "2-manifold and oriented, that crosses itself, or that has triangles without area "
@@ -128,8 +111,7 @@ Program simplifyProgram() {
 
 void declareSimplifyOptions(CLI::App& app, SimplifyCommand& command) {
     declareInput(app, command);
-    declareAim(app, command.aim);
-    declareKept(app, command);
+    declareAim(app, command);
     declareOutput(app, command);
     declareBatchOptions(app, command.batch);
     declareCommonOptions(app, command.common, "no surface is then written, reports are");

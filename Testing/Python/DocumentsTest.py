@@ -17,6 +17,7 @@ from unittest import mock
 
 import adaptiso
 import numpy as np
+from adaptiso import _options
 from support import BIN, BRAIN, InFolder, ball, needs
 
 ROOT = Path(os.environ["ADAPTISO_SOURCE"])
@@ -176,6 +177,14 @@ class Types(unittest.TestCase):
                                "--config-file", SOURCE / "mypy.ini", SOURCE / "adaptiso"],
                               text=True, capture_output=True)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_types_of_options_are_those_of_the_rows(self):
+        """ADAPTISO_RENEW_PAGES=1 writes them anew."""
+        made = _options.type_text()
+        file = SOURCE / "adaptiso" / "_option_types.py"
+        if os.environ.get("ADAPTISO_RENEW_PAGES"):
+            file.write_text(made)
+        self.assertEqual(file.read_text(), made)
 
     def test_the_package_says_that_it_has_types(self):
         self.assertTrue((Path(adaptiso.__file__).parent / "py.typed").is_file())

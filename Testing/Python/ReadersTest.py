@@ -156,11 +156,12 @@ class Zarr(InFolder):
             adaptiso.read(self.root, channel=0, time=0, all_chunks=True)
 
     def test_other_files_have_no_levels(self):
-        mesh_file = self.folder / "a.nrrd"
-        mesh_file.write_text("NRRD0004")
+        image = self.folder / "a.nrrd"
+        image.write_bytes(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"
+                          b"spacings: 1 1 1\n\n" + bytes(8))
         for options in ({"level": 0}, {"channel": 0}, {"time": 0}, {"all_chunks": True}):
-            with self.assertRaisesRegex(adaptiso.Error, "is no Zarr"):
-                adaptiso.read(mesh_file, **options)
+            with self.assertRaisesRegex(adaptiso.Error, "all_chunks.* Zarr"):
+                adaptiso.read(image, **options)
 
 
 if __name__ == "__main__":

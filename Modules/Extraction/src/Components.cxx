@@ -225,6 +225,26 @@ ComponentLabels labelComponents(const TriangleMesh& mesh) {
     return labels;
 }
 
+const Options<ComponentSelection>& pieceOptions() {
+    static const Options<ComponentSelection> rows{
+        option<&ComponentSelection::largestOnly>(
+            {.name = "largest",
+             .key = "largest",
+             .help = "Keep the piece with the most material only (of an open surface: the largest "
+                     "area)"}),
+        option<&ComponentSelection::minVolumeMm3>(
+            {.name = "min-volume",
+             .key = "minVolumeMm3",
+             .valueName = "MM3",
+             .help = "Drop pieces with less material than this, and fill cavities with less",
+             .rule = {.least = 0, .unit = "mm3"}}),
+        option<&ComponentSelection::fillCavities>(
+            {.name = "fill-cavities",
+             .key = "fillCavities",
+             .help = "Drop inner surfaces, and all that lies inside them"})};
+    return rows;
+}
+
 TriangleMesh selectComponents(const TriangleMesh& mesh, const ComponentSelection& selection) {
     if (!(selection.minVolumeMm3 >= 0) || std::isinf(selection.minVolumeMm3)) {
         throw InvalidInput("selectComponents: minVolumeMm3 is " +

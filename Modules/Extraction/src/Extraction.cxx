@@ -16,9 +16,41 @@
 
 namespace adaptiso {
 
+namespace {
+constexpr std::array<std::string_view, 5> kMethods{"adaptive", "boxes", "dmc", "asc", "mc"};
+}
+
 std::string_view toString(Method method) {
-    constexpr const char* kWords[] = {"adaptive", "boxes", "dmc", "asc", "mc"};
-    return kWords[static_cast<std::size_t>(method)];
+    return kMethods[static_cast<std::size_t>(method)];
+}
+
+const Options<ExtractionOptions>& methodOptions() {
+    static const Options<ExtractionOptions> rows{option<&ExtractionOptions::method>(
+        {.name = "method",
+         .key = "method",
+         .help =
+             "adaptive: few triangles within a stated distance of the surface, none crossing "
+             "another; boxes: cubes of several sizes, merged where the surface is flat; dmc: "
+             "discretized marching cubes, coplanar facets between edge midpoints merged; asc: "
+             "adaptive skeleton climbing, rectangular boxes, unmerged; mc: marching cubes, every "
+             "voxel at full resolution",
+         .standard = "adaptive",
+         .words = kMethods})};
+    return rows;
+}
+
+const Options<DiscretizedOptions>& discretizedOptions() {
+    static const Options<DiscretizedOptions> rows{
+        option<&DiscretizedOptions::adjustVertices>(
+            {.name = "adjust-vertices",
+             .key = "adjustVertices",
+             .help = "Move the vertices of the method dmc from the midpoints to where the image "
+                     "reaches the isovalue"}),
+        option<&DiscretizedOptions::mergeWithinBlocks>(
+            {.name = "merge-within-blocks",
+             .key = "mergeWithinBlocks",
+             .help = "Merge facets of the method dmc within blocks of --block-size voxels only"})};
+    return rows;
 }
 
 namespace {
@@ -40,7 +72,7 @@ void requireUsable(const VolumeView& volume, const ExtractionOptions& options) {
                   options.method);
     requireMethod(options.adaptive, "adaptive", Method::Adaptive, options.method);
     if (options.method == Method::Adaptive) {
-        detail::requireInRange(options.adaptive, "extractSurface");
+        requireInRange(options.adaptive, "extractSurface");
     }
     const Index3& size = volume.geometry().size;
     if (*std::max_element(size.begin(), size.end()) > detail::EdgeKey::kMaximumExtent) {

@@ -17,15 +17,6 @@
 namespace adaptiso {
 namespace {
 
-AdaptiveOptions aimsOf(const SimplifyOptions& options) {
-    AdaptiveOptions aims;
-    aims.maxErrorMm = options.maxErrorMm;
-    aims.maxTriangles = options.maxTriangles;
-    aims.reduction = options.reduction;
-    aims.minAngleDeg = options.minAngleDeg;
-    return aims;
-}
-
 SurfacePoint surfacePointAt(const Vec3& p, const TriangleMesh& mesh, std::int64_t triangle) {
     const Triangle& t = mesh.triangles[triangle];
     const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
@@ -111,7 +102,7 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
     const double mayMoveMm =
         detail::kNeedlePart * options.maxErrorMm.value_or(std::numeric_limits<double>::max());
     detail::MeshParts parts = detail::takeApart(mesh, options.keepBorders, mayMoveMm);
-    AdaptiveOptions aims = aimsOf(options);
+    AdaptiveOptions aims{options, {}};
     if (aims.maxErrorMm) *aims.maxErrorMm -= parts.movedMm;
     detail::AdaptiveResult made = detail::simplifyWithin(
         detail::MeshSurface(mesh, parts, aims.maxErrorMm), aims, options.progress);
@@ -139,9 +130,17 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
 
 }  // namespace
 
+const Options<SimplifyOptions>& borderOptions() {
+    static const Options<SimplifyOptions> rows{option<&SimplifyOptions::keepBorders>(
+        {.name = "keep-borders",
+         .key = "keepBorders",
+         .help = "Leave the points of open borders where they are, to the bit"})};
+    return rows;
+}
+
 Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
-    const AdaptiveOptions aims = aimsOf(options);
-    detail::requireInRange(aims, "simplify");
+    const AdaptiveOptions aims{options, {}};
+    requireInRange(aims, "simplify");
     if (!aims.maxErrorMm && !aims.maxTriangles && !aims.reduction) {
         throw InvalidInput("simplify: neither maxErrorMm nor maxTriangles nor reduction is set");
     }

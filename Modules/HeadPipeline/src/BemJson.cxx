@@ -4,6 +4,7 @@
 #include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/TetrahedraJson.h"
+#include "adaptiso/Json/OptionsJson.h"
 
 namespace adaptiso {
 namespace {
@@ -178,7 +179,7 @@ Json bemOptionsJson(const BemModelOptions& options) {
               {"edgeLengthMm", edges},
               {"minGapMm", {b.minSkullMm, b.minScalpMm}},
               {"minCsfMm", b.minCsfMm}};
-    for (const BemNumber& number : bemNumbers()) json[std::string(number.key)] = b.*number.value;
+    json.update(valuesJson(boundaryOptions(), b));
     if (b.stepMm == 0) json["voxelMm"] = nullptr;
     if (b.skullMm == 0) json["skullMm"] = UsualHead(b.ageYears).skullMm;
     json["conductivity"] = {{"brain", options.conductivities.brain},

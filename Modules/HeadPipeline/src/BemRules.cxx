@@ -14,35 +14,9 @@ namespace {
 
 constexpr double kMostGapMm = 20;
 
-constexpr std::array<BemNumber, 11> kNumbers{{
-    {"sulci", "sulciMm", &BoundaryOptions::sulciMm, 30,
-     "Sulci of the brain's own surface narrower than twice this are closed (default: 3)"},
-    {"smoothing", "smoothingMm", &BoundaryOptions::smoothingMm, 10,
-     "Standard deviation of the Gaussian that boundaries are smoothed with (default: 1.5)"},
-    {"closing", "closingMm", &BoundaryOptions::closingMm, 30,
-     "Gaps and canals narrower than twice this are closed (default: 10)"},
-    {"cut-necks", "cutNecksMm", &BoundaryOptions::cutNecksMm, 20,
-     "Cut off what of the inner skull a ball of this radius can't enter and that reaches more "
-     "than 10 mm, as leaks down a foramen do (default: 8; 0: cut nothing)"},
-    {"voxel", "voxelMm", &BoundaryOptions::stepMm, 5,
-     "Side of the voxels that the head is worked on (default: the image's own if they are cubes "
-     "of 0.7 to 1.5 mm, else 1)"},
-    {"csf", "csfMm", &BoundaryOptions::csfMm, 20,
-     "T1: from the brain mask to the inner skull (default: 2)"},
-    {"skull", "skullMm", &BoundaryOptions::skullMm, 200,
-     "T1: thickness of the skull where the image does not show it (default: 6, below 18 years by "
-     "--age: 2 of newborns, 4 at 5 years)"},
-    {"max-skull", "maxSkullMm", &BoundaryOptions::maxSkullMm, 200,
-     "Bone farther than this from the inner skull (face, neck) counts as scalp (default: 20)"},
-    {"age", "ageYears", &BoundaryOptions::ageYears, 120,
-     "Age: T1s of infants and children need it; what is unusual is judged by it (0.5: six months; "
-     "default: 18, adults)",
-     "years"},
-    {"skull-hu", "skullHu", &BoundaryOptions::skullHu, 0, "CT: isovalue of bone (default: 300)",
-     "HU"},
-    {"skin-hu", "skinHu", &BoundaryOptions::skinHu, 0, "CT: isovalue of skin (default: -300)",
-     "HU"},
-}};
+constexpr NumberRule lengthTo(double mostMm) {
+    return {.least = 0, .most = mostMm, .unit = "mm"};
+}
 
 /// Options that need another.
 constexpr std::array<std::pair<const char*, const char*>, 10> kNeeds{{
@@ -62,12 +36,11 @@ using Fault = std::optional<std::string>;
 
 Fault faultOfNumbers(const BemModelOptions& options) {
     const BoundaryOptions& head = options.boundaries;
-    for (const BemNumber& number : kNumbers) {
-        const double value = head.*number.value;
-        if (number.most == 0 || (value >= 0 && value <= number.most)) continue;
-        return "{" + std::string(number.name) + "} " + formatNumber(value) +
-               ": must be a number from 0 to " + formatNumber(number.most) + ", in " +
-               std::string(number.unit);
+    for (const auto& row : boundaryOptions()) {
+        const double value = std::get<double>(row.valueOf(head));
+        if (row.facts.rule.allows(value)) continue;
+        return "{" + std::string(row.facts.name) + "} " + formatNumber(value) + ": must be " +
+               toWords(row.facts.rule);
     }
     const auto [least, most] = std::minmax({head.minSkullMm, head.minScalpMm, head.minCsfMm});
     if (!(least >= CheckRules::kDefaultMinGapMm) || !(most <= kMostGapMm)) {
@@ -174,8 +147,84 @@ Fault faultOfCombinations(const BemModelOptions& options, const BemRequest& requ
 
 }  // namespace
 
-std::span<const BemNumber> bemNumbers() {
-    return kNumbers;
+const Options<BoundaryOptions>& boundaryOptions() {
+    static const Options<BoundaryOptions> rows{
+        option<&BoundaryOptions::sulciMm>(
+            {.name = "sulci",
+             .key = "sulciMm",
+             .valueName = "MM",
+             .help = "Sulci of the brain's own surface narrower than twice this are closed",
+             .standard = "3",
+             .rule = lengthTo(30)}),
+        option<&BoundaryOptions::smoothingMm>(
+            {.name = "smoothing",
+             .key = "smoothingMm",
+             .valueName = "MM",
+             .help = "Standard deviation of the Gaussian that boundaries are smoothed with",
+             .standard = "1.5",
+             .rule = lengthTo(10)}),
+        option<&BoundaryOptions::closingMm>(
+            {.name = "closing",
+             .key = "closingMm",
+             .valueName = "MM",
+             .help = "Gaps and canals narrower than twice this are closed",
+             .standard = "10",
+             .rule = lengthTo(30)}),
+        option<&BoundaryOptions::cutNecksMm>(
+            {.name = "cut-necks",
+             .key = "cutNecksMm",
+             .valueName = "MM",
+             .help = "Cut off what of the inner skull a ball of this radius can't enter and that "
+                     "reaches more than 10 mm, as leaks down a foramen do",
+             .standard = "8; 0: cut nothing",
+             .rule = lengthTo(20)}),
+        option<&BoundaryOptions::stepMm>(
+            {.name = "voxel",
+             .key = "voxelMm",
+             .valueName = "MM",
+             .help = "Side of the voxels that the head is worked on",
+             .standard = "the image's own if they are cubes of 0.7 to 1.5 mm, else 1",
+             .rule = lengthTo(5)}),
+        option<&BoundaryOptions::csfMm>({.name = "csf",
+                                         .key = "csfMm",
+                                         .valueName = "MM",
+                                         .help = "T1: from the brain mask to the inner skull",
+                                         .standard = "2",
+                                         .rule = lengthTo(20)}),
+        option<&BoundaryOptions::skullMm>(
+            {.name = "skull",
+             .key = "skullMm",
+             .valueName = "MM",
+             .help = "T1: thickness of the skull where the image does not show it",
+             .standard = "6, below 18 years by --age: 2 of newborns, 4 at 5 years",
+             .rule = lengthTo(200)}),
+        option<&BoundaryOptions::maxSkullMm>(
+            {.name = "max-skull",
+             .key = "maxSkullMm",
+             .valueName = "MM",
+             .help = "Bone farther than this from the inner skull (face, neck) counts as scalp",
+             .standard = "20",
+             .rule = lengthTo(200)}),
+        option<&BoundaryOptions::ageYears>(
+            {.name = "age",
+             .key = "ageYears",
+             .valueName = "YEARS",
+             .help = "Age: T1s of infants and children need it; what is unusual is judged by it "
+                     "(0.5: six months; default: 18, adults)",
+             .rule = {.least = 0, .most = 120, .unit = "years"}}),
+        option<&BoundaryOptions::skullHu>({.name = "skull-hu",
+                                           .key = "skullHu",
+                                           .valueName = "HU",
+                                           .help = "CT: isovalue of bone",
+                                           .standard = "300",
+                                           .rule = {.unit = "HU"}}),
+        option<&BoundaryOptions::skinHu>({.name = "skin-hu",
+                                          .key = "skinHu",
+                                          .valueName = "HU",
+                                          .help = "CT: isovalue of skin",
+                                          .standard = "-300",
+                                          .rule = {.unit = "HU"}})};
+    return rows;
 }
 
 bool setLayers(BemModelOptions& options, std::int64_t layers) {

@@ -18,25 +18,6 @@ namespace {
 
 using namespace detail;
 
-void requireOptions(const LabelOptions& options) {
-    if (options.maxErrorMm && !(std::isfinite(*options.maxErrorMm) && *options.maxErrorMm >= 0)) {
-        throw InvalidInput("extractLabels: the largest error is " +
-                           std::to_string(*options.maxErrorMm) + " mm, must be >= 0");
-    }
-    if (options.maxTriangles && *options.maxTriangles < 0) {
-        throw InvalidInput("extractLabels: the number of triangles is " +
-                           std::to_string(*options.maxTriangles) + ", must be >= 0");
-    }
-    if (!(options.minAngleDeg >= 0 && options.minAngleDeg <= 40)) {
-        throw InvalidInput("extractLabels: the smallest angle is " +
-                           std::to_string(options.minAngleDeg) + " degrees, must be 0 to 40");
-    }
-    if (options.reduction && !(*options.reduction >= 0 && *options.reduction <= 1)) {
-        throw InvalidInput("extractLabels: the reduction is " + std::to_string(*options.reduction) +
-                           ", must be 0 to 1");
-    }
-}
-
 /// The chosen labels, ascending.
 std::vector<Label> chosenLabels(const LabelGrid& grid, const LabelOptions& options) {
     std::vector<Label> chosen = options.labels;
@@ -135,14 +116,10 @@ LabelResult makeWalls(LabelGrid& grid, const ImageGeometry& geometry, const Labe
 }
 
 /// The goal that the options ask for; empty: the full walls.
-std::optional<SimplifyOptions> simplification(const LabelOptions& options,
-                                              const ImageGeometry& geometry,
-                                              std::int64_t fullTriangles) {
-    SimplifyOptions wanted;
-    wanted.progress = options.progress;
-    wanted.maxErrorMm = options.maxErrorMm;
-    wanted.maxTriangles = options.maxTriangles;
-    wanted.minAngleDeg = options.minAngleDeg;
+std::optional<SimplifyAims> simplification(const LabelOptions& options,
+                                           const ImageGeometry& geometry,
+                                           std::int64_t fullTriangles) {
+    SimplifyAims wanted = options;
     if (options.reduction) {
         const auto left = static_cast<std::int64_t>(
             std::ceil((1 - *options.reduction) * static_cast<double>(fullTriangles)));
@@ -158,7 +135,7 @@ std::optional<SimplifyOptions> simplification(const LabelOptions& options,
 }  // namespace
 
 LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options) {
-    requireOptions(options);
+    requireInRange(options, "extractLabels", true);
     requireNoNeedles(volume.geometry());
     LabelGrid grid = makeGrid(volume);
     const std::vector<Label> chosen = chosenLabels(grid, options);
@@ -166,7 +143,7 @@ LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options)
     const auto wanted = simplification(options, volume.geometry(), result.statistics.fullTriangles);
     if (wanted) {
         SimplifiedWalls walls =
-            simplifyWalls(std::move(result.complex), volume.geometry(), *wanted);
+            simplifyWalls(std::move(result.complex), volume.geometry(), *wanted, options.progress);
         result.complex = std::move(walls.complex);
         result.statistics.errorBoundMm = walls.errorBoundMm;
         result.statistics.wantedTriangles = wanted->maxTriangles;

@@ -498,19 +498,19 @@ constexpr double kCubeLimits = 24;
 }  // namespace
 
 SimplifiedWalls simplifyWalls(LabelComplex&& full, const ImageGeometry& geometry,
-                              const SimplifyOptions& options) {
+                              const SimplifyAims& aims, const ProgressCallback& progress) {
     const double h = portable::cubeRoot(geometry.voxelVolumeMm3());
     const auto tell = [&](double part) {
-        if (options.progress) options.progress("simplify", part);
+        if (progress) progress("simplify", part);
     };
     WallAim aim;
-    aim.limitMm = options.maxErrorMm.value_or(0.05 * h);
-    aim.mayGrow = !options.maxErrorMm;
-    aim.minAngleDeg = options.minAngleDeg;
-    aim.enough = options.maxTriangles.value_or(0);
+    aim.limitMm = aims.maxErrorMm.value_or(0.05 * h);
+    aim.mayGrow = !aims.maxErrorMm;
+    aim.minAngleDeg = aims.minAngleDeg;
+    aim.enough = aims.maxTriangles.value_or(0);
     SimplifiedWalls walls;
     WholeWalls whole(std::move(full), geometry);
-    if (options.maxTriangles) {  // the cheapest edges are chosen among all
+    if (aims.maxTriangles) {  // the cheapest edges are chosen among all
         const auto all = static_cast<double>(
             std::max({geometry.size[0], geometry.size[1], geometry.size[2]}) + 1);
         walls.errorBoundMm = whole.simplify(CubeCut(geometry.size, 2 * all, false), aim);

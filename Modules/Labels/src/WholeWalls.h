@@ -103,13 +103,6 @@ private:
     std::vector<WallAssignment> assignments_;
 };
 
-struct SimplifyOptions {
-    std::optional<double> maxErrorMm;  ///< > 0
-    std::optional<std::int64_t> maxTriangles;
-    double minAngleDeg = 0;  ///< no smaller one is made
-    ProgressCallback progress;
-};
-
 struct SimplifiedWalls {
     LabelComplex complex;
     double errorBoundMm = 0;
@@ -121,7 +114,8 @@ struct SimplifiedWalls {
 /// Edges collapse, cheapest first [Garland1997], as far as quick tests let them. Then the distance
 /// is proved and crossings are looked for, exactly; what breaks a promise is taken back. That is
 /// done in cubes side by side, and again in cubes cut elsewhere; for a count in all at once.
+/// \param aims  maxErrorMm > 0; the share is not looked at
 SimplifiedWalls simplifyWalls(LabelComplex&& full, const ImageGeometry& geometry,
-                              const SimplifyOptions& options);
+                              const SimplifyAims& aims, const ProgressCallback& progress);
 
 }  // namespace adaptiso::detail

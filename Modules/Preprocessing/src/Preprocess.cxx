@@ -163,9 +163,38 @@ double halfSpanMm(const ImageGeometry& geometry, const Vec3& axis) {
 
 }  // namespace
 
+namespace {
+constexpr std::array<std::string_view, 3> kInterpolations{"linear", "bspline", "nearest"};
+constexpr NumberRule kLength{.least = 0, .isAbove = true, .unit = "mm"};
+}  // namespace
+
 std::string_view toString(Interpolation interpolation) {
-    constexpr const char* kWords[] = {"nearest", "linear", "bspline"};
-    return kWords[static_cast<std::size_t>(interpolation)];
+    return kInterpolations[static_cast<std::size_t>(interpolation)];
+}
+
+const Options<PreprocessOptions>& filterOptions() {
+    static const Options<PreprocessOptions> rows{
+        option<&PreprocessOptions::smoothSigmaMm>(
+            {.name = "smooth",
+             .key = "smoothSigmaMm",
+             .valueName = "SIGMA_MM",
+             .help = "Then smooth with a Gaussian of this standard deviation, the same in every "
+                     "direction in space",
+             .rule = kLength}),
+        option<&PreprocessOptions::resampleMm>({.name = "resample",
+                                                .key = "resampleMm",
+                                                .valueName = "MM",
+                                                .help = "Then resample to cubic voxels with sides "
+                                                        "of this length",
+                                                .rule = kLength}),
+        option<&PreprocessOptions::interpolation>(
+            {.name = "interpolation",
+             .key = "interpolation",
+             .help = "How --resample finds values between voxels: linear, bspline (cubic), or "
+                     "nearest (for labels)",
+             .standard = "linear",
+             .words = kInterpolations})};
+    return rows;
 }
 
 ImageGeometry isotropicGrid(const ImageGeometry& geometry, double stepMm) {

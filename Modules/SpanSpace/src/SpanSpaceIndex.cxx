@@ -76,9 +76,39 @@ std::unique_ptr<const BlockSearch<T>> makeSearch(BlockRanges<T> ranges, const Bl
 
 }  // namespace
 
+namespace {
+constexpr std::array<std::string_view, 3> kSearches{"kdtree", "octree", "linear"};
+constexpr std::array<std::string_view, 2> kBorders{"closed", "open"};
+constexpr std::array<std::string_view, 4> kBlockSizes{"2", "4", "8", "16"};
+}  // namespace
+
 std::string_view toString(BlockSearchKind kind) {
-    constexpr const char* kWords[] = {"kdtree", "octree", "linear"};
-    return kWords[static_cast<std::size_t>(kind)];
+    return kSearches[static_cast<std::size_t>(kind)];
+}
+
+const Options<IndexOptions>& indexOptions() {
+    static const Options<IndexOptions> rows{
+        option<&IndexOptions::blockSize>(
+            {.name = "block-size",
+             .key = "blockSize",
+             .help = "Voxels a side of the index's blocks, and of the largest box of the methods "
+                     "boxes and asc",
+             .standard = "4",
+             .words = kBlockSizes}),
+        option<&IndexOptions::border>(
+            {.name = "border",
+             .key = "border",
+             .help = "Where a surface meets the border of the image: closed there, or left open",
+             .standard = "closed",
+             .words = kBorders}),
+        option<&IndexOptions::search>(
+            {.name = "search",
+             .key = "search",
+             .help = "How the blocks that a surface touches are found: kd-tree over their minima "
+                     "and maxima, octree, or a look at every block. The surface is the same",
+             .standard = "kdtree",
+             .words = kSearches})};
+    return rows;
 }
 
 SpanSpaceIndex::SpanSpaceIndex(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -4,15 +4,13 @@
 #include <cmath>
 #include <string_view>
 
+#include "adaptiso/Json/OptionsJson.h"
+
 namespace adaptiso {
 namespace {
 
 /// Components listed in full; a noisy image has thousands.
 constexpr std::size_t kMaxComponents = 100;
-
-std::string_view borderWord(Border border) {
-    return border == Border::Closed ? "closed" : "open";
-}
 
 Json boxesJson(const std::vector<BoxCount>& boxes) {
     Json list = Json::array();
@@ -74,19 +72,12 @@ Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelTy
 
 Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions& index,
                         const ComponentSelection& selection) {
-    return {{"method", toString(extraction.method)},
-            {"adjustVertices", extraction.discretized.adjustVertices},
-            {"mergeWithinBlocks", extraction.discretized.mergeWithinBlocks},
-            {"maxErrorMm", orNull(extraction.adaptive.maxErrorMm)},
-            {"maxTriangles", orNull(extraction.adaptive.maxTriangles)},
-            {"reduction", orNull(extraction.adaptive.reduction)},
-            {"minAngleDeg", extraction.adaptive.minAngleDeg},
-            {"blockSize", index.blockSize},
-            {"border", borderWord(index.border)},
-            {"search", toString(index.search)},
-            {"largest", selection.largestOnly},
-            {"minVolumeMm3", selection.minVolumeMm3},
-            {"fillCavities", selection.fillCavities}};
+    Json json = valuesJson(methodOptions(), extraction);
+    json.update(valuesJson(discretizedOptions(), extraction.discretized));
+    json.update(valuesJson(aimOptions(AimedSurface::OfScan), extraction.adaptive));
+    json.update(valuesJson(indexOptions(), index));
+    json.update(valuesJson(pieceOptions(), selection));
+    return json;
 }
 
 Json workJson(const std::optional<AdaptiveWork>& work) {

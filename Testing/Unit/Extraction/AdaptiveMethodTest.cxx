@@ -453,9 +453,8 @@ TEST(AdaptiveMethod, HasABoundOfAPartOfTheLeastDistanceBetweenPlanesUnlessAsked)
 TEST(AdaptiveMethod, RefusesLimitsThatMeanNothing) {
     const Volume volume = ball(8, 3, Mat3{});
     for (AdaptiveOptions bad :
-         {AdaptiveOptions{.maxErrorMm = 0.0, .maxTriangles = {}, .reduction = {}},
-          AdaptiveOptions{.maxErrorMm = {}, .maxTriangles = -1, .reduction = {}},
-          AdaptiveOptions{.maxErrorMm = {}, .maxTriangles = {}, .reduction = 1.5}}) {
+         {AdaptiveOptions{{.maxErrorMm = 0.0}, {}}, AdaptiveOptions{{.maxTriangles = -1}, {}},
+          AdaptiveOptions{{.reduction = 1.5}, {}}}) {
         EXPECT_THROW(extractWith(volume, 0, bad), InvalidInput);
     }
 }

@@ -76,25 +76,6 @@ def optional_number(name: str, value: Any, rule: str,
     return None if value is None else number(name, value, rule, holds)
 
 
-def aim(max_error: Any, triangles: Any, reduction: Any, zero: bool = False,
-        unit: str = ", in mm") -> Dict[str, Any]:
-    """Arguments for C++: how far to simplify; `zero`: no error at all may be asked for. \\raises Error"""
-    rule = "a number from 0" if zero else "a number above 0"
-    return {
-        "max_error": optional_number("max_error", max_error, rule + unit,
-                                     lambda value: value > 0 or (zero and value == 0)),
-        "triangles": None if triangles is None else count("triangles", triangles),
-        "reduction": optional_number("reduction", reduction, "a number from 0 to 1",
-                                     lambda value: 0 <= value <= 1),
-    }
-
-
-def smallest_angle(value: Any) -> float:
-    """Degrees that new angles must have. \\raises Error"""
-    return 0.0 if value is None else number(
-        "min_angle", value, "a number from 0 to 40, in degrees", lambda angle: 0 <= angle <= 40)
-
-
 def count(name: str, value: Any, least: int = 0, most: int = _LARGEST_COUNT) -> int:
     """`value` as a whole number from `least` to `most`. \\raises Error"""
     rule = f"a whole number from {least}" + (f" to {most}" if most < _LARGEST_COUNT else "")

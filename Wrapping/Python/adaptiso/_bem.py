@@ -7,7 +7,7 @@ import json
 import logging
 import math
 import os
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -18,7 +18,13 @@ from ._arguments import (Progress, Warned, count, flag, is_path, listed, number,
                          threads as checked_threads, word)
 from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import Mesh, load, require_known_frames, stated_frames
+from ._options import checked, takes
 from ._quality import Check
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._option_types import BemOptions
 
 logger = logging.getLogger("adaptiso")
 
@@ -275,6 +281,7 @@ class _Source(NamedTuple):
                 "warnings": self.warnings}
 
 
+@takes("bem")
 def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any = None,
         pial: Optional[Sequence[Any]] = None, labels: Any = None,
         tissues: Union[str, Mapping[str, Sequence[int]], None] = None, head_mask: Any = None,
@@ -283,16 +290,12 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         input_coordinates: Union[str, Sequence[Optional[str]], None] = None,
         affine: Any = None, layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
         edge_length: Optional[Tuple[float, float]] = None, meg: bool = False,
-        min_gap: Union[float, Sequence[float]] = (2, 2, 1), csf: float = 2,
-        skull: Optional[float] = None, age: float = 18,
-        max_skull: float = 20, skull_hu: float = 300, skin_hu: float = -300, closing: float = 10,
-        sulci: float = 3, smoothing: float = 1.5, cut_necks: float = 8,
-        voxel: Optional[float] = None, conductivity: Sequence[float] = (0.3, 0.006, 0.3),
+        min_gap: Union[float, Sequence[float]] = (2, 2, 1), conductivity: Sequence[float] = (0.3, 0.006, 0.3),
         electrodes: Union[Mapping[str, Point], Any] = None, electrodes_in: Optional[str] = None,
         montage: Optional[str] = None, landmarks: Union[Mapping[str, Point], str, None] = None,
         sources: Optional[Sequence[Any]] = None, source_count: Optional[int] = None,
         source_grid: Optional[float] = None, head_shape: bool = False, threads: int = 0,
-        progress: Optional[Progress] = None) -> HeadModel:
+        progress: Optional[Progress] = None, **numbers: Unpack[BemOptions]) -> HeadModel:
     """Make the nested surfaces of a head model: inner skull, outer skull, outer skin, and with four
     layers the brain; electrodes on the skin.
 
@@ -348,29 +351,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         The inner skull alone.
     min_gap : float or sequence of two or three floats
         Least thickness of skull, scalp and, with four layers, CSF, mm, 0.5 to 20; guaranteed.
-    csf : float
-        T1: from the brain to the inner skull, mm.
-    skull : float, optional
-        T1: thickness of the skull where the image does not show it, mm. Default: 6, below 18 years by
-        `age` (2 of newborns, 4 at 5 years).
-    age : float
-        Years (0.5: six months). T1s of infants and children need it; what is unusual is judged by it.
-    max_skull : float
-        Bone farther than this from the inner skull (face, neck) counts as scalp, mm.
-    skull_hu, skin_hu : float
-        CT: isovalues of bone and skin, Hounsfield units.
-    closing : float
-        Gaps and canals narrower than twice this are closed, mm.
-    sulci : float
-        Sulci of the brain's own surface narrower than twice this are closed, mm.
-    smoothing : float
-        Standard deviation of the Gaussian that boundaries are smoothed with, mm.
-    cut_necks : float
-        Cut off what of the inner skull a ball of this radius (mm) can't enter, as leaks down a
-        foramen are; 0: cut nothing.
-    voxel : float, optional
-        Side of the voxels that the head is worked on, mm. Default: the image's own if they are
-        cubes of 0.7 to 1.5 mm, else 1.
+    **options
     conductivity : sequence of three or four floats
         Of brain, skull and scalp, S/m; with four layers of brain, CSF, skull and scalp (default of
         CSF: 1.79).
@@ -433,7 +414,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         ("head_mask", head_mask), ("pial", pial), ("volume", volume), ("tissues", tissues),
         ("input_coordinates", input_coordinates), ("electrodes", electrodes),
         ("electrodes_in", electrodes_in), ("montage", montage), ("landmarks", landmarks),
-        ("sources", sources), ("skull", skull), ("source_count", source_count), ("source_grid", source_grid))
+        ("sources", sources), ("skull", numbers.get("skull")), ("source_count", source_count), ("source_grid", source_grid))
         if value is not None}
     options: Dict[str, Any] = {
         "layers": count("layers", layers),
@@ -450,11 +431,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
             "source_grid", source_grid, "a number from 1 to 50, in mm", lambda mm: 1 <= mm <= 50),
         "input_coordinates": ([input_coordinates] if isinstance(input_coordinates, str)
                               else [frame for frame in input_coordinates or () if frame]),
-        **{name: number(name, value) for name, value in (
-            ("csf", csf), ("skull", 0 if skull is None else skull), ("age", age),
-            ("max_skull", max_skull), ("skull_hu", skull_hu),
-            ("skin_hu", skin_hu), ("closing", closing), ("sulci", sulci), ("smoothing", smoothing),
-            ("cut_necks", cut_necks), ("voxel", 0 if voxel is None else voxel))},
+        **checked("bem", numbers),
         **_electrodes(electrodes, electrodes_in, montage, landmarks),
     }
     given_threads, callback = checked_threads(threads), checked_progress(progress)

@@ -10,14 +10,21 @@ import re
 import sys
 import threading
 import weakref
-from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
+from typing import (TYPE_CHECKING, Any, Dict, Iterator, List, Mapping, NamedTuple, Optional,
+                    Tuple)
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import Warned, count, flag, is_path, path, shown
+from ._arguments import Warned, is_path, path, shown
+from ._options import checked, takes
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._option_types import ReadOptions
 
 logger = logging.getLogger("adaptiso")
 
@@ -69,9 +76,8 @@ class Image(NamedTuple):
         return not self == other
 
 
-def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int] = None,
-         level: Optional[int] = None, channel: Optional[int] = None, time: Optional[int] = None,
-         all_chunks: bool = False, resample_slices: bool = False) -> Image:
+@takes("read")
+def read(file: Any, **options: Unpack[ReadOptions]) -> Image:
     """Read a scan: NIfTI, NRRD, MetaImage, MGH, Zarr, or DICOM (a file, a folder, a DICOMDIR); MINC
     and others by ITK's readers, where libadaptisoItkIO.so (package adaptiso-itk) is installed.
 
@@ -84,18 +90,7 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     file : str or path
         A file, or the folder with the slices of a DICOM series. What it is follows from its
         content, not from its name.
-    series : str, optional
-        Number or SeriesInstanceUID of the DICOM series to take where a folder holds several.
-    volume_index : int, optional
-        Which volume of a 4-D image to take, from 0.
-    level : int, optional
-        Which resolution of an OME-Zarr or N5 to take; default 0, the finest.
-    channel, time : int, optional
-        Which channel and time point of an OME-Zarr or N5 to take, from 0, where it has several.
-    all_chunks : bool
-        Refuse a Zarr with chunks that are missing; else they hold the fill value, with a warning.
-    resample_slices : bool, optional
-        Blend DICOM slices that lie unevenly onto even steps; without it they are refused.
+    **options
 
     Returns
     -------
@@ -116,30 +111,19 @@ def read(file: Any, *, series: Optional[str] = None, volume_index: Optional[int]
     >>> image.affine.diagonal()
     array([1., 1., 1., 1.])
     """
-    return _read(file, series, volume_index, level, channel, time, all_chunks, resample_slices)[0]
+    return _read(file, options)[0]
 
 
-def _read(file: Any, series: Optional[str] = None, volume_index: Optional[int] = None,
-          level: Optional[int] = None, channel: Optional[int] = None, time: Optional[int] = None,
-          all_chunks: bool = False, resample_slices: bool = False) -> Tuple[Image, str]:
+def _read(file: Any, options: Mapping[str, Any] = {}) -> Tuple[Image, str]:
     """`read`, and how the header scales stored values ("": it does not)."""
     name = path("file", file)
-    if series is not None and not isinstance(series, (str, int)):
-        raise Error(f"series {shown(series)}: must be a number or a SeriesInstanceUID")
-    numbers = {key: None if value is None else count(key, value) for key, value in (
-        ("volume_index", volume_index), ("level", level), ("channel", channel), ("time", time))}
-    whole, resample = flag("all_chunks", all_chunks), flag("resample_slices", resample_slices)
-    is_of_zarr = whole or any(numbers[key] is not None for key in ("level", "channel", "time"))
+    given = checked("read", options, "read")
     if not hasattr(_adaptiso, "read_image"):
-        return _read_by_nibabel(name, numbers["volume_index"],
-                                series is not None or resample or is_of_zarr), ""
-    if is_of_zarr and not os.path.isdir(name):
-        raise Error(f"{name}: is no Zarr or N5, which level, channel, time and all_chunks are for")
+        index = given.pop("volume_index", None)
+        return _read_by_nibabel(name, index, any(value is not False for value in given.values())), ""
     try:
         with _reading:
-            array, affine, kind, warnings, scaling = _adaptiso.read_image(
-                name, None if series is None else str(series), **numbers, all_chunks=whole,
-                resample_slices=resample)
+            array, affine, kind, warnings, scaling = _adaptiso.read_image(name, given)
     except Error as error:
         raise Error(_in_python(str(error))) from None
     for warning in warnings:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 import logging
-from typing import (Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple,
+from typing import (TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple,
                     Union)
 
 import numpy as np
@@ -13,11 +13,17 @@ import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, aim, count, is_path, listed, path as checked_path,
+from ._arguments import (Progress, count, is_path, listed, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads)
 from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import IN_VOXELS, Mesh, is_identity
+from ._options import checked, takes
 from ._triangles import Triangles
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._option_types import LabelsOptions
 
 logger = logging.getLogger("adaptiso")
 
@@ -225,10 +231,11 @@ class _Names:
                        else "names= takes a table of names" if not known else "see regions"))
 
 
-def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional[int] = None,
-           reduction: Optional[float] = None, labels: Optional[Iterable[Union[int, str]]] = None,
+@takes("labels")
+def labels(image: Any, *, labels: Optional[Iterable[Union[int, str]]] = None,
            names: Union[Mapping[int, str], Any] = None, affine: Any = None, threads: int = 0,
-           progress: Optional[Progress] = None) -> LabelSurfaces:
+           progress: Optional[Progress] = None,
+           **options: Unpack[LabelsOptions]) -> LabelSurfaces:
     """Make the surfaces of all regions of a segmentation at once: neighbours share one wall.
 
     Each region's surface is closed, outward and 2-manifold; no two triangles of all walls cross;
@@ -240,14 +247,7 @@ def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional
     image : ndarray of shape (I, J, K), nibabel, SimpleITK or ITK image, or path
         Whole numbers, of any type; 0 is what lies outside of all regions. As for `surface`; an
         array in C order is copied here.
-    max_error : float, optional
-        Largest distance in mm, both ways, of each wall to itself at full resolution; 0: the full
-        resolution. Default: 0.15 of the least distance between planes of voxels, unless
-        `triangles` or `reduction` is given.
-    triangles : int, optional
-        As near to the full resolution as so many triangles in all walls can be.
-    reduction : float, optional
-        Share of the full resolution's triangles to drop, 0 to 1.
+    **options
     labels : iterable of int or str, optional
         The regions that are wanted, by number or name; their walls are those that the whole map gives them. Default:
         all.
@@ -284,18 +284,16 @@ def labels(image: Any, *, max_error: Optional[float] = None, triangles: Optional
     >>> walls.region(1).is_closed, bool(adaptiso.check(walls.region(2)))
     (True, True)
     """
-    options: Dict[str, Any] = {
-        **aim(max_error, triangles, reduction, zero=True),
-        "threads": checked_threads(threads),
-        "progress": checked_progress(progress),
-    }
+    aims = checked("labels", options)
+    checked_threads(threads)
+    checked_progress(progress)
     table = _names(names, image)
-    options["labels"] = _chosen(labels, table)
+    chosen = _chosen(labels, table)
     samples = samples_of(image, affine, True)
     subject = samples.file or "image"
     with read_only(samples.user):
         try:
-            data = _adaptiso.make_labels(samples.volume, subject=subject, **options)
+            data = _adaptiso.make_labels(samples.volume, aims, chosen, threads, progress, subject)
         except Error as error:
             if "whole numbers" not in str(error):
                 raise

@@ -139,8 +139,8 @@ def _extracted(samples: Array, isovalue: float) -> Triangles:
     prepared = samples_of(samples, None)
     with read_only(prepared.user):
         try:
-            mesh = _adaptiso.make_surface(prepared.volume, None, "open", isovalue, "mc", None, None,
-                                          None, 0.0, False, 0.0, False, 0, None, "", "", [])
+            mesh = _adaptiso.make_surface(prepared.volume, None, isovalue,
+                                          {"border": "open", "method": "mc"}, 0, None, "", "", [])
         except _adaptiso.InternalError:
             raise
         except Error as error:

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, aim, flag, progress as checked_progress, shown, smallest_angle,
+from ._arguments import (Progress, progress as checked_progress, shown,
                          threads as checked_threads)
 from ._mesh import Mesh, mesh_data_of, stated_frames
+from ._options import checked, takes
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._option_types import SimplifyOptions
 
 
-def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
-             triangles: Optional[int] = None, reduction: Optional[float] = None,
-             min_angle: Optional[float] = None, keep_borders: bool = False,
-             input_coordinates: Optional[str] = None, threads: int = 0,
-             progress: Optional[Progress] = None) -> Mesh:
+@takes("simplify")
+def simplify(mesh: Any, faces: Any = None, *, input_coordinates: Optional[str] = None,
+             threads: int = 0, progress: Optional[Progress] = None,
+             **options: Unpack[SimplifyOptions]) -> Mesh:
     """Give any triangle mesh fewer triangles, within a proved distance.
 
     A closed surface stays closed, of the same pieces and genus, and crosses itself nowhere. Open
@@ -25,24 +30,16 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
     ``report`` says where. The same mesh and options give the same result, for any number of
     threads: that of the program adaptiso-simplify for a file with the same coordinates.
 
+    One of `max_error`, `triangles` and `reduction` must be given; with several, triangles are
+    dropped until any of them ends it.
+
     Parameters
     ----------
     mesh : Mesh, (vertices, faces), path, object with vertices and faces, or vertices
         In any unit: `max_error` is in the same. Vertices have the shape (n, 3).
     faces : array_like of integers of shape (m, 3), optional
         Where `mesh` holds vertices alone.
-    max_error : float, optional
-        Largest distance, both ways, between the mesh and the result.
-    triangles : int, optional
-        Simplify to so many triangles, as close to the mesh as the method gets.
-    reduction : float, optional
-        Share of the triangles to drop, 0 to 1. One of these three must be given; with several,
-        triangles are dropped until any of them ends it.
-    min_angle : float, optional
-        Make no angle below this, 0 to 40 degrees, except those that are there, at the price of more
-        triangles.
-    keep_borders : bool
-        Vertices on open borders stay, bit by bit.
+    **options
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, optional
         The frame of a file's points, overriding the file's own.
     threads, progress
@@ -76,12 +73,10 @@ def simplify(mesh: Any, faces: Any = None, *, max_error: Optional[float] = None,
     if faces is not None and np.ndim(faces) == 0:
         raise Error(f"faces {shown(faces)}: must be a table of integers"
                     + (f"; max_error={faces}?" if isinstance(faces, (int, float)) else ""))
-    if max_error is None and triangles is None and reduction is None:
+    if all(options.get(aim) is None for aim in ("max_error", "triangles", "reduction")):
         raise Error("simplify: one of max_error, triangles and reduction must be given")
     given = mesh if faces is None else (mesh, faces)
     data = mesh_data_of(given, False, *stated_frames(input_coordinates, [given]))
     made, found = _adaptiso.simplify_mesh(
-        data, **aim(max_error, triangles, reduction, unit=""), min_angle=smallest_angle(min_angle),
-        keep_borders=flag("keep_borders", keep_borders), threads=checked_threads(threads),
-        progress=checked_progress(progress))
+        data, checked("simplify", options), checked_threads(threads), checked_progress(progress))
     return Mesh._of(made, found)

@@ -34,6 +34,7 @@ from . import _adaptiso, _surface
 from ._adaptiso import Error
 from ._images import read_only, samples_of
 from ._mesh import Mesh
+from ._options import checked
 from ._simplify import simplify
 
 __all__ = ["Isosurface", "Simplify"]
@@ -180,17 +181,17 @@ class Isosurface(_Filter):
             affine[:2] *= -1
         samples = samples_of(_array_of(image, scalars), affine)
         low, high = samples.volume.value_range()
-        index = (_adaptiso.build_index(samples.volume, "closed", 0)
+        index = (_adaptiso.build_index(samples.volume, {}, 0)
                  if len(self._values) > 1 else None)
         meshes: List[Optional[Mesh]] = []
         with read_only(samples.user):
             for part, level in enumerate(self._values):
                 error, reduction = self._aims()
-                options = _surface._options(level, error, None, reduction, None, "adaptive", False,
-                                            0, False, 0, self._progress(part, len(self._values)))
-                is_reached = low < level <= high
-                meshes.append(_surface._make(samples, index, "closed", options)
-                              if is_reached else None)
+                options = checked("surface", {"max_error": error, "reduction": reduction})
+                progress = self._progress(part, len(self._values))
+                is_missed = level <= low or level > high
+                meshes.append(None if is_missed else
+                              _surface._make(samples, index, level, options, 0, progress))
         made = [mesh for mesh in meshes if mesh is not None]
         turn = np.array([-1.0, -1.0, 1.0]) if frame == 2 else None
         fill(output, made, turn, self._computes_normals)

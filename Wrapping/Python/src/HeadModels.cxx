@@ -17,6 +17,7 @@
 #include "Common/AtomicOutput.h"
 #include "Common/Json.h"
 #include "MeshData.h"
+#include "OptionRows.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
@@ -434,10 +435,7 @@ BemModelOptions modelOptionsOf(const py::dict& options) {
     if (!setLayers(model, take<std::int64_t>(options, "layers"))) {
         throw InvalidInput("layers: must be 1, 3 or 4");
     }
-    for (const BemNumber& number : bemNumbers()) {
-        const std::string name = argumentName(std::string(number.name));
-        model.boundaries.*number.value = take<double>(options, name.c_str());
-    }
+    python::take(boundaryOptions(), model.boundaries, options);
     takeNumbers(options, "min_gap", kMinGapRule,
                 [&](const auto& gaps) { return setMinGaps(model, gaps); });
     takeNumbers(options, "edge_length", kEdgeLengthRule,

@@ -14,6 +14,7 @@
 #include "Calls.h"
 #include "Common/LabelsJson.h"
 #include "MeshData.h"
+#include "OptionRows.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ImageGeometry.h"
@@ -231,19 +232,15 @@ void declareLabels(py::module_& module) {
     declareLabelData(module);
     module.def(
         "make_labels",
-        [](const ArrayVolume& volume, std::optional<double> maxError,
-           std::optional<std::int64_t> triangles, std::optional<double> reduction,
-           const std::vector<Label>& labels, int threads, py::object progress,
-           const std::string& subject) {
-            LabelOptions options;
-            options.maxErrorMm = maxError;
-            options.maxTriangles = triangles;
-            options.reduction = reduction;
-            options.labels = labels;
-            return makeLabels(volume, std::move(options), threads, std::move(progress), subject);
+        [](const ArrayVolume& volume, const py::dict& options, const std::vector<Label>& labels,
+           int threads, py::object progress, const std::string& subject) {
+            LabelOptions extraction;
+            take(aimOptions(AimedSurface::Walls), extraction, options);
+            extraction.labels = labels;
+            return makeLabels(volume, std::move(extraction), threads, std::move(progress), subject);
         },
-        py::arg("volume"), py::arg("max_error"), py::arg("triangles"), py::arg("reduction"),
-        py::arg("labels"), py::arg("threads"), py::arg("progress"), py::arg("subject"));
+        py::arg("volume"), py::arg("options"), py::arg("labels"), py::arg("threads"),
+        py::arg("progress"), py::arg("subject"));
     module.def(
         "read_label_table",
         [](const std::string& path) {

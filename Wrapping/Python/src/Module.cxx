@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Calls.h"
+#include "OptionRows.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 
@@ -29,6 +30,7 @@ PYBIND11_MODULE(_adaptiso, module) {
             PyErr_SetString(PyExc_MemoryError, "adaptiso: there is not enough memory");
         }
     });
+    declareOptions(module);
     declareMeshes(module);
     declareSurfaces(module);
     declareReaders(module);

@@ -6,6 +6,7 @@
 
 #include "Arrays.h"
 #include "Calls.h"
+#include "OptionRows.h"
 #ifdef ADAPTISO_PYTHON_READERS
 #include "adaptiso/ImageIO/ReadVolume.h"
 #endif
@@ -26,22 +27,12 @@ py::tuple readImage(const std::string& path, const ReadOptions& options) {
 void declareReaders(py::module_& module) {
     module.def(
         "read_image",
-        [](const std::string& path, std::optional<std::string> series,
-           std::optional<std::int64_t> volumeIndex, std::optional<std::int64_t> level,
-           std::optional<std::int64_t> channel, std::optional<std::int64_t> time, bool allChunks,
-           bool resampleSlices) {
+        [](const std::string& path, const py::dict& given) {
             ReadOptions options;
-            options.series = std::move(series);
-            options.volumeIndex = volumeIndex;
-            options.level = level;
-            options.channel = channel;
-            options.timePoint = time;
-            options.refusesMissingChunks = allChunks;
-            options.resampleSlices = resampleSlices;
+            take(readOptions(), options, given);
             return readImage(path, options);
         },
-        py::arg("path"), py::arg("series"), py::arg("volume_index"), py::arg("level"),
-        py::arg("channel"), py::arg("time"), py::arg("all_chunks"), py::arg("resample_slices"));
+        py::arg("path"), py::arg("options"));
 }
 #else
 void declareReaders(py::module_&) {}  // the Python half reads by nibabel

@@ -12,6 +12,7 @@
 #include "Arrays.h"
 #include "Calls.h"
 #include "MeshData.h"
+#include "OptionRows.h"
 #include "adaptiso/Core/Warning.h"
 
 namespace adaptiso::python {
@@ -72,19 +73,13 @@ void declareSimplify(py::module_& module) {
     module.def("nearest_points", nearestOf, py::arg("mesh"), py::arg("onto"));
     module.def(
         "simplify_mesh",
-        [](const MeshData& mesh, std::optional<double> maxError,
-           std::optional<std::int64_t> triangles, std::optional<double> reduction, double minAngle,
-           bool keepBorders, int threads, py::object progress) {
-            SimplifyOptions options;
-            options.maxErrorMm = maxError;
-            options.maxTriangles = triangles;
-            options.reduction = reduction;
-            options.minAngleDeg = minAngle;
-            options.keepBorders = keepBorders;
-            return simplifyMesh(mesh, std::move(options), threads, std::move(progress));
+        [](const MeshData& mesh, const py::dict& options, int threads, py::object progress) {
+            SimplifyOptions simplified;
+            take(aimOptions(AimedSurface::Mesh), simplified, options);
+            take(borderOptions(), simplified, options);
+            return simplifyMesh(mesh, std::move(simplified), threads, std::move(progress));
         },
-        py::arg("mesh"), py::arg("max_error"), py::arg("triangles"), py::arg("reduction"),
-        py::arg("min_angle"), py::arg("keep_borders"), py::arg("threads"), py::arg("progress"));
+        py::arg("mesh"), py::arg("options"), py::arg("threads"), py::arg("progress"));
 }
 
 }  // namespace adaptiso::python

@@ -13,6 +13,7 @@
 #include "Calls.h"
 #include "Common/Progress.h"
 #include "MeshData.h"
+#include "OptionRows.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
@@ -46,41 +47,23 @@ std::shared_ptr<ArrayIndex> buildIndex(const ArrayVolume& volume, const IndexOpt
 /// Arguments of surface() and Index.surface(), apart from the image.
 struct SurfaceRequest {
     std::optional<double> level;  ///< empty: Otsu's method chooses
-    std::string method;
-    std::optional<double> maxErrorMm;
-    std::optional<std::int64_t> maxTriangles;
-    std::optional<double> reduction;
-    double minAngleDeg = 0;
-    bool largest = false;
-    double minVolumeMm3 = 0;
-    bool fillCavities = false;
+    ExtractionOptions extraction;
+    ComponentSelection selection;
+    Border border = Border::Closed;
     int threads = 0;
-
-    ExtractionOptions extraction() const {
-        ExtractionOptions options;
-        options.method = methodOf(method);
-        options.adaptive.maxErrorMm = maxErrorMm;
-        options.adaptive.maxTriangles = maxTriangles;
-        options.adaptive.reduction = reduction;
-        options.adaptive.minAngleDeg = minAngleDeg;
-        if (options.method != Method::Adaptive && !(options.adaptive == AdaptiveOptions{})) {
-            throw InvalidInput(
-                "max_error, triangles, reduction and min_angle are for the method 'adaptive'");
-        }
-        return options;
-    }
-    ComponentSelection selection(Border border) const {
-        ComponentSelection selection;
-        selection.largestOnly = largest;
-        selection.minVolumeMm3 = minVolumeMm3;
-        selection.fillCavities = fillCavities;
-        if (border == Border::Open && (fillCavities || minVolumeMm3 > 0)) {
-            throw InvalidInput(
-                "min_volume and fill_cavities need closed surfaces, not border 'open'");
-        }
-        return selection;
-    }
 };
+
+void requireUsable(const SurfaceRequest& request) {
+    const ExtractionOptions& extraction = request.extraction;
+    if (extraction.method != Method::Adaptive && !(extraction.adaptive == AdaptiveOptions{})) {
+        throw InvalidInput(
+            "max_error, triangles, reduction and min_angle are for the method 'adaptive'");
+    }
+    const ComponentSelection& pieces = request.selection;
+    if (request.border == Border::Open && (pieces.fillCavities || pieces.minVolumeMm3 > 0)) {
+        throw InvalidInput("min_volume and fill_cavities need closed surfaces, not border 'open'");
+    }
+}
 
 std::string rangeText(double level, const ValueRange& range) {
     if (range.minimum > range.maximum) return "the image holds no numbers";
@@ -105,12 +88,12 @@ double levelOf(const SurfaceRequest& request, const VolumeView& volume, const Va
 
 /// The history's part that is known before the surface.
 /// \param built  an index, or null
-SurfaceHistory historyOf(const SurfaceRequest& request, const ArrayIndex* built, Border border,
+SurfaceHistory historyOf(const SurfaceRequest& request, const ArrayIndex* built,
                          const ImageOrigin& origin) {
     SurfaceHistory history;
-    history.extraction = request.extraction();
-    history.selection = request.selection(border);
-    history.index = {.border = border, .search = BlockSearchKind::Linear};
+    history.extraction = request.extraction;
+    history.selection = request.selection;
+    history.index = {.border = request.border, .search = BlockSearchKind::Linear};
     if (built != nullptr) {
         history.index = built->index.options();
         history.indexBytes = built->index.memoryBytes();
@@ -127,7 +110,7 @@ TriangleMesh choosingPieces(const SurfaceRequest& request, const Work& work) {
     try {
         return work();
     } catch (const NothingLeft& error) {
-        throw InvalidInput("min_volume " + formatNumber(request.minVolumeMm3) + ": " +
+        throw InvalidInput("min_volume " + formatNumber(request.selection.minVolumeMm3) + ": " +
                            error.what());
     }
 }
@@ -187,9 +170,10 @@ std::vector<Warning> warningsOf(const ArrayVolume& volume, const SurfaceHistory&
 /// Makes a surface as adaptiso-mesh does, from the samples on.
 /// \param built  an index, or null
 std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex* built,
-                                      const std::string& border, const SurfaceRequest& request,
-                                      const ImageOrigin& origin, py::object progress) {
-    SurfaceHistory history = historyOf(request, built, borderOf(border), origin);
+                                      const SurfaceRequest& request, const ImageOrigin& origin,
+                                      py::object progress) {
+    requireUsable(request);
+    SurfaceHistory history = historyOf(request, built, origin);
     history.pixelType = volume.view.pixelType();
     history.range = volume.valueRange(request.threads);
     Watcher watcher(std::move(progress));
@@ -237,27 +221,33 @@ void declareSurfaces(py::module_& module) {
                                [](const ArrayIndex& self) { return self.index.memoryBytes(); });
     module.def(
         "build_index",
-        [](const ArrayVolume& volume, const std::string& border, int threads) {
-            return buildIndex(volume, {.border = borderOf(border)}, threads);
+        [](const ArrayVolume& volume, const py::dict& options, int threads) {
+            IndexOptions index;
+            take(indexOptions(), index, options);
+            return buildIndex(volume, index, threads);
         },
-        py::arg("volume"), py::arg("border"), py::arg("threads"));
+        py::arg("volume"), py::arg("options"), py::arg("threads"));
     module.def(
         "make_surface",
-        [](ArrayVolume& volume, const std::shared_ptr<ArrayIndex>& index, const std::string& border,
-           std::optional<double> level, const std::string& method, std::optional<double> maxError,
-           std::optional<std::int64_t> triangles, std::optional<double> reduction, double minAngle,
-           bool largest, double minVolume, bool fillCavities, int threads, py::object progress,
+        [](ArrayVolume& volume, const std::shared_ptr<ArrayIndex>& index,
+           std::optional<double> level, const py::dict& options, int threads, py::object progress,
            const std::string& file, const std::string& format,
            const std::vector<Warning>& warnings) {
-            return makeSurface(volume, index.get(), border,
-                               {level, method, maxError, triangles, reduction, minAngle, largest,
-                                minVolume, fillCavities, threads},
-                               {file, format, warnings}, std::move(progress));
+            SurfaceRequest request;
+            request.level = level;
+            request.threads = threads;
+            IndexOptions border = index ? index->index.options() : IndexOptions{};
+            take(indexOptions(), border, options);
+            request.border = border.border;
+            take(methodOptions(), request.extraction, options);
+            take(aimOptions(AimedSurface::OfScan), request.extraction.adaptive, options);
+            take(pieceOptions(), request.selection, options);
+            return makeSurface(volume, index.get(), request, {file, format, warnings},
+                               std::move(progress));
         },
-        py::arg("volume"), py::arg("index"), py::arg("border"), py::arg("level"), py::arg("method"),
-        py::arg("max_error"), py::arg("triangles"), py::arg("reduction"), py::arg("min_angle"),
-        py::arg("largest"), py::arg("min_volume"), py::arg("fill_cavities"), py::arg("threads"),
-        py::arg("progress"), py::arg("file"), py::arg("format"), py::arg("warnings"));
+        py::arg("volume"), py::arg("index"), py::arg("level"), py::arg("options"),
+        py::arg("threads"), py::arg("progress"), py::arg("file"), py::arg("format"),
+        py::arg("warnings"));
 }
 
 }  // namespace adaptiso::python

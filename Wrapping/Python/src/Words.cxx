@@ -8,19 +8,6 @@
 
 namespace adaptiso::python {
 
-Method methodOf(const std::string& word) {
-    return choose<Method>("method", word,
-                          {{"adaptive", Method::Adaptive},
-                           {"boxes", Method::Boxes},
-                           {"dmc", Method::DiscretizedMarchingCubes},
-                           {"asc", Method::SkeletonClimbing},
-                           {"mc", Method::MarchingCubes}});
-}
-
-Border borderOf(const std::string& word) {
-    return choose<Border>("border", word, {{"closed", Border::Closed}, {"open", Border::Open}});
-}
-
 CoordinateFrame frameOf(const std::string& word) {
     return choose<CoordinateFrame>("frame", word,
                                    {{"ras", CoordinateFrame::Ras},

@@ -28,8 +28,6 @@ Value choose(const char* argument, const std::string& word,
     throw InvalidInput(std::string(argument) + " '" + word + "': must be one of " + words);
 }
 
-Method methodOf(const std::string& word);
-Border borderOf(const std::string& word);
 CoordinateFrame frameOf(const std::string& word);
 std::optional<CoordinateFrame> frameOf(const std::optional<std::string>& word);
 Profile profileOf(const std::string& word);

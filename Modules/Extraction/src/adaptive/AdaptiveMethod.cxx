@@ -275,22 +275,6 @@ private:
 
 }  // namespace
 
-void requireInRange(const AdaptiveOptions& options, const char* function) {
-    const auto refuse = [&](const char* what) {
-        throw InvalidInput(std::string(function) + ": " + what);
-    };
-    if (options.maxErrorMm && !(*options.maxErrorMm > 0 && std::isfinite(*options.maxErrorMm))) {
-        refuse("maxErrorMm must be a finite number above 0");
-    }
-    if (options.maxTriangles && *options.maxTriangles < 0) refuse("maxTriangles is below 0");
-    if (options.reduction && !(*options.reduction >= 0 && *options.reduction <= 1)) {
-        refuse("reduction must lie between 0 and 1");
-    }
-    if (!(options.minAngleDeg >= 0 && options.minAngleDeg <= 40)) {
-        refuse("minAngleDeg must lie between 0 and 40");
-    }
-}
-
 AdaptiveResult simplifyWithin(const FullSurface& full, const AdaptiveOptions& options,
                               const ProgressCallback& progress) {
     return AdaptiveMethod(full, options, progress).run();

@@ -14,9 +14,6 @@ namespace adaptiso::detail {
 Extraction extractAdaptive(const VolumeView& volume, const BlockGrid& grid, BlockQuery query,
                            const ExtractionOptions& options);
 
-/// \param function  named in the message \throws InvalidInput when an option is out of range
-void requireInRange(const AdaptiveOptions& options, const char* function);
-
 struct AdaptiveResult {
     TriangleMesh mesh;
     double errorBoundMm = 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso {
@@ -28,6 +29,9 @@ struct ComponentSelection {
 
     bool keepsAll() const { return !largestOnly && minVolumeMm3 == 0 && !fillCavities; }
 };
+
+/// --largest, --min-volume and --fill-cavities
+const Options<ComponentSelection>& pieceOptions();
 
 /// The part of `mesh` that `selection` keeps: vertices, normals and triangles in their old order,
 /// without unused vertices. Empty when nothing is large enough.

@@ -5,7 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/Progress.h"
+#include "adaptiso/Core/SimplifyAims.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/AdaptiveWork.h"
@@ -24,23 +26,13 @@ enum class Method {
 };
 std::string_view toString(Method method);
 
-/// Aims of Method::Adaptive. With neither bound nor count the bound is
-/// kDefaultMaxErrorVoxels; with both, triangles are dropped until either stops it.
-struct AdaptiveOptions {
+/// Aims of Method::Adaptive: distance to the surface of MarchingCubes, share of its triangles. With
+/// neither bound nor count the bound is kDefaultMaxErrorVoxels. \pre maxErrorMm > 0
+struct AdaptiveOptions : SimplifyAims {
     /// Fraction of the least distance between planes of samples. Chosen by measurement:
     /// Decisions/0006.
     static constexpr double kDefaultMaxErrorVoxels = 0.15;
 
-    /// Two-sided: no point of the surface of MarchingCubes is farther from the mesh, no point of
-    /// the mesh farther from that surface, mm. \pre > 0
-    std::optional<double> maxErrorMm;
-    std::optional<std::int64_t> maxTriangles;  ///< to simplify to. \pre >= 0
-    /// Share of the triangles of MarchingCubes to drop, 0 to 1: a count by another name.
-    std::optional<double> reduction;
-    /// Angles below this are not made where there was none, and where there was, none smaller
-    /// still; but where single places are mended in the end. Takes more triangles. \pre 0 to 40,
-    /// degrees
-    double minAngleDeg = 0;
     /// Parts that are noise stay at full resolution: within a small bound they lose half of their
     /// triangles at most, in several times the time. Not given: by the default bound alone.
     std::optional<bool> leavesNoise;
@@ -68,6 +60,11 @@ struct ExtractionOptions {
     bool computeNormals = true;      ///< central differences of the volume, in physical space
     ProgressCallback progress;       ///< called as the work goes on; may be empty
 };
+
+/// --method
+const Options<ExtractionOptions>& methodOptions();
+/// --adjust-vertices and --merge-within-blocks
+const Options<DiscretizedOptions>& discretizedOptions();
 
 /// Simple boxes of one size that the surface passes through.
 struct BoxCount {

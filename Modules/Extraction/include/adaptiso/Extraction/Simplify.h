@@ -6,28 +6,22 @@
 #include <vector>
 
 #include "adaptiso/Core/Progress.h"
+#include "adaptiso/Core/SimplifyAims.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/AdaptiveWork.h"
 
 namespace adaptiso {
 
-/// Aims of simplify(). With a bound and a count, triangles are dropped until either stops it.
-///
-/// Lengths are in the mesh's own unit, which need not be the millimetre: nothing depends on the
-/// scale.
-struct SimplifyOptions {
-    /// Two-sided: no point of the input is farther from the result, no point of the result farther
-    /// from the input. \pre > 0, at least 1e-12 of the mesh's diagonal
-    std::optional<double> maxErrorMm;
-    std::optional<std::int64_t> maxTriangles;  ///< to simplify to. \pre >= 0
-    /// Share of the triangles to drop, 0 to 1: a count by another name.
-    std::optional<double> reduction;
-    /// As AdaptiveOptions::minAngleDeg. \pre 0 to 40, degrees
-    double minAngleDeg = 0;
+/// Aims of simplify(). Lengths are in the mesh's own unit, which need not be the millimetre:
+/// nothing depends on the scale. \pre maxErrorMm > 0, at least 1e-12 of the mesh's diagonal
+struct SimplifyOptions : SimplifyAims {
     /// Vertices on open borders stay, bit by bit.
     bool keepBorders = false;
     ProgressCallback progress;  ///< called as the work goes on; may be empty
 };
+
+/// --keep-borders
+const Options<SimplifyOptions>& borderOptions();
 
 /// Facts found about the input, and the bound proved for the result.
 struct SimplifyStatistics {

@@ -8,23 +8,13 @@
 #include <string_view>
 #include <vector>
 
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/HeadPipeline/BemModel.h"
 
 namespace adaptiso {
 
-/// A number that shapes a head model: one row is an option of adaptiso-bem (--max-skull), an
-/// argument of Python (max_skull) and a key of the report.
-struct BemNumber {
-    std::string_view name;  ///< "max-skull"
-    std::string_view key;   ///< "maxSkullMm"
-    double BoundaryOptions::*value;
-    double most;  ///< from 0 to this; 0: any number
-    std::string_view help;
-    std::string_view unit = "mm";
-};
-
-/// By the report's order of keys.
-std::span<const BemNumber> bemNumbers();
+/// Numbers that shape a head model, by the report's order of keys.
+const Options<BoundaryOptions>& boundaryOptions();
 
 inline constexpr std::int64_t kLeastBemVertices = 42, kMostBemVertices = 200'000;
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Core/Warning.h"
 
@@ -39,6 +40,10 @@ struct ReadOptions {
     /// that must not fork, or that debug a decoder.
     bool sandbox = true;
 };
+
+/// Rows of what is read of an image: --series, --volume-index, --level, --channel, --time,
+/// --refuse-missing-chunks and --resample-slices.
+const Options<ReadOptions>& readOptions();
 
 /// A scan as read: the samples in the file's own pixel type, where they lie, and what a user
 /// should know about the reading.

@@ -8,6 +8,7 @@
 
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Progress.h"
+#include "adaptiso/Core/SimplifyAims.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Tetrahedra/MesherFiles.h"
@@ -29,19 +30,13 @@ struct LabelComplex {
     friend bool operator==(const LabelComplex&, const LabelComplex&) = default;
 };
 
-struct LabelOptions {
+/// Aims of extractLabels(): distance of each wall to itself at full resolution, 0 for these walls
+/// themselves, kDefaultMaxErrorVoxels with neither bound nor count. Where walls at full resolution
+/// have an angle below minAngleDeg, none that is smaller still is made. \pre maxErrorMm >= 0
+struct LabelOptions : SimplifyAims {
     /// Fraction of the least distance between planes of samples.
     static constexpr double kDefaultMaxErrorVoxels = 0.15;
 
-    /// Two-sided distance to the full-resolution walls, mm, of each wall to itself. 0: these walls
-    /// themselves; none: kDefaultMaxErrorVoxels, unless a count is given. \pre >= 0
-    std::optional<double> maxErrorMm;
-    std::optional<std::int64_t> maxTriangles;  ///< to simplify to. \pre >= 0
-    /// Share of the full-resolution triangles to drop, 0 to 1: a count by another name.
-    std::optional<double> reduction;
-    /// No angle below it is made: where walls at full resolution have a smaller one, none that is
-    /// smaller still. \pre 0 to 40
-    double minAngleDeg = 0;
     /// The regions whose walls are wanted, each label once; empty: all. They are what the whole map
     /// has, wherever the other side's label is wanted or not.
     std::vector<Label> labels;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Core/Warning.h"
 
@@ -34,12 +35,12 @@ using CropRanges = std::array<IndexRange, 3>;
 Volume cropVolume(const VolumeView& volume, const CropRanges& ranges);
 
 enum class Interpolation {
-    Nearest,  ///< the nearest voxel's value: for labels
     Linear,   ///< between the eight voxels around: exact for values that change linearly
-    BSpline   ///< cubic B-spline through all voxels: smoother, may overshoot at edges
+    BSpline,  ///< cubic B-spline through all voxels: smoother, may overshoot at edges
+    Nearest   ///< the nearest voxel's value: for labels
 };
 
-/// "nearest", "linear", "bspline"
+/// "linear", "bspline", "nearest"
 std::string_view toString(Interpolation interpolation);
 
 /// The grid of cubic voxels that resampleVolume() samples.
@@ -73,6 +74,9 @@ struct PreprocessOptions {
     bool changesNothing() const { return !crop && !smoothSigmaMm && !resampleMm; }
     friend bool operator==(const PreprocessOptions&, const PreprocessOptions&) = default;
 };
+
+/// --smooth, --resample and --interpolation
+const Options<PreprocessOptions>& filterOptions();
 
 enum class PreprocessStep { Crop, Smooth, Resample };
 

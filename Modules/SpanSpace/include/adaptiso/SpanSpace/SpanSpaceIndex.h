@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/SpanSpace/BlockGrid.h"
 
@@ -27,6 +28,9 @@ struct IndexOptions {
     Border border = Border::Closed;
     BlockSearchKind search = BlockSearchKind::KdTree;
 };
+
+/// --block-size, --border and --search
+const Options<IndexOptions>& indexOptions();
 
 /// The blocks that an isovalue touches, and the cost of finding them.
 struct BlockQuery {

@@ -1,0 +1,54 @@
+"""Types of keyword arguments, made from the library's rows of options. Do not edit."""
+
+from typing import Literal, Optional, TypedDict
+
+
+class SurfaceOptions(TypedDict, total=False):
+    max_error: Optional[float]
+    triangles: Optional[int]
+    reduction: Optional[float]
+    min_angle: Optional[float]
+    method: Optional[Literal["adaptive", "boxes", "dmc", "asc", "mc"]]
+    border: Optional[Literal["closed", "open"]]
+    largest: Optional[bool]
+    min_volume: Optional[float]
+    fill_cavities: Optional[bool]
+
+
+class SimplifyOptions(TypedDict, total=False):
+    max_error: Optional[float]
+    triangles: Optional[int]
+    reduction: Optional[float]
+    min_angle: Optional[float]
+    keep_borders: Optional[bool]
+
+
+class LabelsOptions(TypedDict, total=False):
+    max_error: Optional[float]
+    triangles: Optional[int]
+    reduction: Optional[float]
+    min_angle: Optional[float]
+
+
+class BemOptions(TypedDict, total=False):
+    sulci: Optional[float]
+    smoothing: Optional[float]
+    closing: Optional[float]
+    cut_necks: Optional[float]
+    voxel: Optional[float]
+    csf: Optional[float]
+    skull: Optional[float]
+    max_skull: Optional[float]
+    age: Optional[float]
+    skull_hu: Optional[float]
+    skin_hu: Optional[float]
+
+
+class ReadOptions(TypedDict, total=False):
+    series: Optional[str]
+    volume_index: Optional[int]
+    level: Optional[int]
+    channel: Optional[int]
+    time: Optional[int]
+    all_chunks: Optional[bool]
+    resample_slices: Optional[bool]

@@ -1,0 +1,113 @@
+"""Keyword arguments that are rows of the library's tables, as the programs' options are."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import re
+import textwrap
+from typing import Any, Callable, Dict, List, Mapping, Optional, TypeVar
+
+from . import _adaptiso
+from ._adaptiso import Error
+from ._arguments import count, flag, number, shown, word
+
+_Row = Dict[str, Any]
+_ROWS: Dict[str, List[_Row]] = json.loads(_adaptiso.option_rows())
+# of refusals in which users know the argument by an older name
+_NAMES = {"refuse-missing-chunks": "all_chunks"}
+_TYPES = {"flag": "bool", "number": "float", "count": "int", "choice": "str", "text": "str"}
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def _name(row: _Row) -> str:
+    return _NAMES.get(row["name"], str(row["name"]).replace("-", "_"))
+
+
+def rows(subject: str) -> Dict[str, _Row]:
+    """The rows of a function, by the names of its arguments."""
+    return {_name(row): row for row in _ROWS[subject]}
+
+
+def checked(subject: str, given: Mapping[str, Any], function: str = "") -> Dict[str, Any]:
+    """The arguments in `given` for C++; those left out, or None, are left to it. \\raises Error"""
+    known = rows(subject)
+    options = {}
+    for name, value in given.items():
+        if name not in known:
+            raise TypeError(f"{function or subject}() got an unexpected keyword argument '{name}'")
+        row = known[name]
+        if value is not None or not _may_be_none(row):
+            options[str(row["name"]).replace("-", "_")] = _checked(name, value, row)
+    return options
+
+
+def _may_be_none(row: _Row) -> bool:
+    """A default of 0 that is stated in words stands for not given."""
+    return row["default"] is None or (row["default"] == 0 and "standard" in row)
+
+
+def _checked(name: str, value: Any, row: _Row) -> Any:
+    kind = row["kind"]
+    if kind == "number":
+        return number(name, value, row["rule"], lambda given: _allows(row, given))
+    if kind == "count":
+        return count(name, value)
+    if kind == "choice":
+        return word(name, value, row["words"])
+    if kind == "flag":
+        return flag(name, value)
+    if not isinstance(value, (str, int)) or isinstance(value, bool):
+        raise Error(f"{name} {shown(value)}: must be {row['rule']}")
+    return str(value)
+
+
+def _allows(row: _Row, value: float) -> bool:
+    return ("least" not in row or value >= row["least"]) and \
+        ("above" not in row or value > row["above"]) and ("most" not in row or value <= row["most"])
+
+
+def _documented(name: str, row: _Row) -> str:
+    words = row.get("words")
+    kind = "{" + ", ".join(f'"{each}"' for each in words) + "}" if words else _TYPES[row["kind"]]
+    text = re.sub(r"--([a-z-]+)", lambda option: f"`{option[1].replace('-', '_')}`", row["help"])
+    text = re.sub(r"\bMethod adaptive: (.)", lambda first: first[1].upper(), text)
+    body = textwrap.fill(f"{text}.", 92, initial_indent="    ",
+                         subsequent_indent="    ")
+    return f"{name} : {kind}, optional\n{body}"
+
+
+def takes(subject: str, only: Optional[List[str]] = None) -> Callable[[_Function], _Function]:
+    """Decorates a function that takes ``**options`` of a subject: its signature and its docstring, where
+    that has a line ``**options``, name them."""
+    def decorate(function: _Function) -> _Function:
+        known = {name: row for name, row in rows(subject).items() if only is None or name in only}
+        signature = inspect.signature(function)
+        own = [each for each in signature.parameters.values()
+               if each.kind is not inspect.Parameter.VAR_KEYWORD]
+        added = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=row["default"],
+                                   annotation=_TYPES[row["kind"]])
+                 for name, row in known.items() if name not in signature.parameters]
+        positional = [each for each in own if each.kind is not inspect.Parameter.KEYWORD_ONLY]
+        function.__signature__ = signature.replace(  # type: ignore[attr-defined]
+            parameters=positional + added + own[len(positional):])
+        text = "\n".join(_documented(name, row) for name, row in known.items())
+        function.__doc__ = (function.__doc__ or "").replace(
+            "    **options\n", textwrap.indent(text, "    ") + "\n")
+        return function
+    return decorate
+
+
+def type_text() -> str:
+    """The text of _option_types.py."""
+    lines = ['"""Types of keyword arguments, made from the library\'s rows of options. Do not edit."""',
+             "", "from typing import Literal, Optional, TypedDict"]
+    for subject in _ROWS:
+        lines += ["", "", f"class {subject.capitalize()}Options(TypedDict, total=False):"]
+        for name, row in rows(subject).items():
+            words = row.get("words")
+            kind = f"Literal[{', '.join(json.dumps(each) for each in words)}]" if words else \
+                _TYPES[row["kind"]]
+            lines.append(f"    {name}: Optional[{kind}]")
+    return "\n".join(lines) + "\n"

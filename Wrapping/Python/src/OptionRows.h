@@ -1,0 +1,36 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <string>
+
+#include "adaptiso/Core/Options.h"
+
+namespace adaptiso::python {
+
+namespace py = pybind11;
+
+/// "min-angle" -> "min_angle"
+inline std::string argumentName(const OptionFacts& facts) {
+    std::string name(facts.name);
+    std::ranges::replace(name, '-', '_');
+    return name;
+}
+
+/// \pre  of the row's kind: the Python half has checked it
+OptionValue toOptionValue(const py::handle& value, OptionKind kind);
+
+/// Puts the arguments that rows name into `owner`.
+template <class Owner>
+void take(const Options<Owner>& rows, std::type_identity_t<Owner>& owner, const py::dict& given) {
+    for (const Option<Owner>& row : rows) {
+        const std::string name = argumentName(row.facts);
+        if (!given.contains(name)) continue;
+        row.put(owner, toOptionValue(given[name.c_str()], row.kind));
+    }
+}
+
+void declareOptions(py::module_& module);
+
+}  // namespace adaptiso::python
