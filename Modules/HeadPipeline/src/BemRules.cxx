@@ -205,13 +205,15 @@ const Options<BoundaryOptions>& boundaryOptions() {
              .help = "Bone farther than this from the inner skull (face, neck) counts as scalp",
              .standard = "20",
              .rule = lengthTo(200)}),
-        option<&BoundaryOptions::ageYears>(
-            {.name = "age",
-             .key = "ageYears",
-             .valueName = "YEARS",
-             .help = "Age: T1s of infants and children need it; what is unusual is judged by it "
-                     "(0.5: six months; default: 18, adults)",
-             .rule = {.least = 0, .most = 120, .unit = "years"}}),
+        option<&BoundaryOptions::ageYears>({.name = "age",
+                                            .key = "ageYears",
+                                            .valueName = "YEARS",
+                                            .help =
+                                                "Age, 0.5 for six months: T1s of infants and "
+                                                "children need it; what is unusual is judged by "
+                                                "it",
+                                            .standard = "18, adults",
+                                            .rule = {.least = 0, .most = 120, .unit = "years"}}),
         option<&BoundaryOptions::skullHu>({.name = "skull-hu",
                                            .key = "skullHu",
                                            .valueName = "HU",
