@@ -12,6 +12,7 @@
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -51,8 +52,8 @@ std::string meshResult(const Json& report) {
     std::string text;
     for (const Json& surface : report.value("surfaces", Json::array())) {
         text += (text.empty() ? "" : "; ") + surface.at("output").at("file").get<std::string>() +
-                ", " + formatCount(surface.at("triangles").get<long long>()) + " triangles at " +
-                formatShort(surface.at("isovalue").get<double>());
+                ", " + formatCount(wholeNumber<std::int64_t>(surface.at("triangles"))) +
+                " triangles at " + formatShort(surface.at("isovalue").get<double>());
     }
     return text;
 }
@@ -63,7 +64,8 @@ std::string labelsResult(const Json& report) {
         if (!check.value("passed", true)) return "failed: " + check.at("name").get<std::string>();
     }
     return formatCount(static_cast<long long>(report.at("regions").size())) + " regions, " +
-           formatCount(report.at("walls").at("triangles").get<long long>()) + " triangles";
+           formatCount(wholeNumber<std::int64_t>(report.at("walls").at("triangles"))) +
+           " triangles";
 }
 
 std::string bemResult(const Json& report) {
@@ -78,8 +80,9 @@ std::string bemResult(const Json& report) {
 std::string simplifyResult(const Json& report) {
     if (!report.contains("output")) return {};
     if (report.value("failedBySoundness", false)) return "is not sound";
-    return formatCount(report.at("output").at("triangles").get<long long>()) + " triangles of " +
-           formatCount(report.at("input").at("triangles").get<long long>());
+    return formatCount(wholeNumber<std::int64_t>(report.at("output").at("triangles"))) +
+           " triangles of " +
+           formatCount(wholeNumber<std::int64_t>(report.at("input").at("triangles")));
 }
 
 /// The result of a run that reached one, in a few words.

@@ -13,9 +13,16 @@ namespace fs = std::filesystem;
 std::vector<RecordedFile> filesFrom(const Json& list) {
     std::vector<RecordedFile> files;
     for (const Json& json : list) {
-        files.push_back({json.at("file"), json.value("files", std::uint64_t{1}), json.at("bytes"),
-                         json.at("sha256"), json.at("modifiedNs"), json.at("changedNs"),
-                         json.value("option", ""), json.value("place", "")});
+        RecordedFile file;
+        file.file = json.at("file");
+        if (json.contains("files")) file.files = wholeNumber<std::uint64_t>(json["files"]);
+        file.bytes = wholeNumber<std::uint64_t>(json.at("bytes"));
+        file.sha256 = json.at("sha256");
+        file.modifiedNs = wholeNumber<std::int64_t>(json.at("modifiedNs"));
+        file.changedNs = wholeNumber<std::int64_t>(json.at("changedNs"));
+        file.option = json.value("option", "");
+        file.place = json.value("place", "");
+        files.push_back(std::move(file));
     }
     return files;
 }
@@ -69,8 +76,8 @@ RunRecord recordFrom(const Json& json) {
     if (!record.asked.is_null()) requireRequest(record.asked);
     record.name = json.at("name");
     record.files = json.at("files").get<std::vector<std::string>>();
-    if (!json.at("exitCode").is_null()) record.exitCode = json.at("exitCode");
-    if (!json.at("signal").is_null()) record.signal = json.at("signal");
+    if (!json.at("exitCode").is_null()) record.exitCode = wholeNumber<int>(json.at("exitCode"));
+    if (!json.at("signal").is_null()) record.signal = wholeNumber<int>(json.at("signal"));
     if (!record.isFinished() && json.at("error").is_object()) {
         record.error = json["error"].at("text");
     }

@@ -91,7 +91,7 @@ std::vector<QualityRow> rowsOfReport(const QualityRow& scan, const Json& report,
     if (scan.product == "labels") {
         for (const Json& region : report.at("regions")) {
             QualityRow& row = rows.emplace_back(
-                rowOf(scan, std::to_string(region.at("label").get<long long>()), region));
+                rowOf(scan, std::to_string(wholeNumber<std::int64_t>(region.at("label"))), region));
             row.name = region.at("name");
             row[Measure::Components] = numberAt(region, "components");
         }

@@ -1,11 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "adaptiso/Core/ParseJson.h"
 
 namespace adaptiso {
 namespace {
+
+using Json = nlohmann::json;
 
 std::string nested(std::size_t depth, const std::string& begin = "[",
                    const std::string& end = "]") {
@@ -63,6 +67,14 @@ struct FakeJson {
 TEST(ParseJson, DoesNotHandDeepNestingOn) {
     EXPECT_FALSE(parseJson<FakeJson>(nested(100)).isDiscarded);
     EXPECT_TRUE(parseJson<FakeJson>(nested(101)).isDiscarded);
+}
+
+TEST(ParseJson, WholeNumbersAreNotConverted) {
+    EXPECT_EQ(wholeNumber<std::int64_t>(Json::parse("-7")), -7);
+    EXPECT_EQ(wholeNumber<std::uint64_t>(Json::parse("18446744073709551615")), UINT64_MAX);
+    for (const char* const text : {"5e27", "1.0", "1e3", "99999999999999999999", "\"7\"", "null"}) {
+        EXPECT_THROW(wholeNumber<std::int64_t>(Json::parse(text)), Json::exception) << text;
+    }
 }
 
 TEST(ParseJson, RefusesAKeyTwiceInOneObject) {

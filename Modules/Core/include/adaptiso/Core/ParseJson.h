@@ -34,4 +34,16 @@ Json parseJson(std::string_view text) {
     return isTwice ? Json(Json::value_t::discarded) : json;
 }
 
+/// The whole number that `json` is. get() of one with a decimal point or an exponent is undefined
+/// where the type can't hold it.
+/// \throws Json::exception  it is another value
+template <class Integer, class Json>
+Integer wholeNumber(const Json& json) {
+    using Unsigned = typename Json::number_unsigned_t;
+    using Signed = typename Json::number_integer_t;
+    return json.is_number_unsigned()
+               ? static_cast<Integer>(json.template get_ref<const Unsigned&>())
+               : static_cast<Integer>(json.template get_ref<const Signed&>());
+}
+
 }  // namespace adaptiso
