@@ -83,12 +83,12 @@ struct MemberOf<V O::*> {
 template <class T>
 struct Unwrapped {
     using Type = T;
-    static constexpr bool isOptional = false;
+    static constexpr bool kIsOptional = false;
 };
 template <class T>
 struct Unwrapped<std::optional<T>> {
     using Type = T;
-    static constexpr bool isOptional = true;
+    static constexpr bool kIsOptional = true;
 };
 
 template <class Value>
@@ -126,15 +126,15 @@ constexpr auto option(const OptionFacts& facts) {
     using Owner = typename detail::MemberOf<decltype(member)>::Owner;
     using Held = typename detail::MemberOf<decltype(member)>::Value;
     using Value = typename detail::Unwrapped<Held>::Type;
-    constexpr bool isOptional = detail::Unwrapped<Held>::isOptional;
-    constexpr OptionKind kind = std::is_same_v<Value, bool>           ? OptionKind::Flag
-                                : std::is_same_v<Value, double>       ? OptionKind::Number
-                                : std::is_same_v<Value, std::int64_t> ? OptionKind::Count
-                                : std::is_same_v<Value, std::string>  ? OptionKind::Text
-                                                                      : OptionKind::Choice;
-    return Option<Owner>{facts, kind, isOptional,
+    constexpr bool kIsOptional = detail::Unwrapped<Held>::kIsOptional;
+    constexpr OptionKind kKind = std::is_same_v<Value, bool>           ? OptionKind::Flag
+                                 : std::is_same_v<Value, double>       ? OptionKind::Number
+                                 : std::is_same_v<Value, std::int64_t> ? OptionKind::Count
+                                 : std::is_same_v<Value, std::string>  ? OptionKind::Text
+                                                                       : OptionKind::Choice;
+    return Option<Owner>{facts, kKind, kIsOptional,
                          [](const Owner& owner, const OptionFacts& of) -> OptionValue {
-                             if constexpr (isOptional) {
+                             if constexpr (kIsOptional) {
                                  if (!(owner.*member)) return {};
                                  return detail::toOptionValue<Value>(*(owner.*member), of);
                              } else {
@@ -142,7 +142,7 @@ constexpr auto option(const OptionFacts& facts) {
                              }
                          },
                          [](Owner& owner, const OptionValue& value, const OptionFacts& of) {
-                             if constexpr (isOptional) {
+                             if constexpr (kIsOptional) {
                                  if (std::holds_alternative<std::monostate>(value)) {
                                      (owner.*member).reset();
                                      return;
