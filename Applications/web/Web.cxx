@@ -355,7 +355,7 @@ EMSCRIPTEN_KEEPALIVE int adaptisoPreview(double isovalue) {
     return web::answering("adaptiso-mesh", [&] { web::preview(isovalue); });
 }
 
-/// What the page's forms offer, of the library's own tables: build.mjs writes it into the page.
+/// Formats and tissue presets of the library's tables. build.mjs writes them into the page's forms.
 EMSCRIPTEN_KEEPALIVE int adaptisoChoices() {
     return web::answering("adaptiso", [] {
         adaptiso::Json formats = adaptiso::Json::array();

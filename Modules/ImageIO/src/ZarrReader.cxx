@@ -471,7 +471,7 @@ public:
         folder_ = store.root() / array.path;
     }
 
-    /// Relative to the array's folder; empty where there is none, or none among the first names.
+    /// Relative to the array's folder; empty if missing among the first names.
     fs::path find() {
         if (array_.separator != '/') return findFlat();
         return array_.hasKeyPrefix ? findBelow("c", 0, false) : findBelow("", 0, false);

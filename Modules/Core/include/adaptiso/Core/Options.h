@@ -31,18 +31,18 @@ inline constexpr std::int64_t kAnyCount = std::int64_t{1} << 53;
 /// "a whole number from 0 to 3", "a whole number, 0 or more"
 std::string countRule(std::int64_t least, std::int64_t most);
 
-/// Facts about one option, from which every surface of it is made: the command line, reports,
-/// Python, npm, the page.
+/// Facts about one option, from which the command line, --help, reports and Python's arguments are
+/// made.
 struct OptionFacts {
     std::string_view name;         ///< "min-angle": --min-angle, Python's min_angle
-    std::string_view key{};        ///< in reports and npm: "minAngleDeg"
+    std::string_view key{};        ///< in reports: "minAngleDeg"
     std::string_view valueName{};  ///< in --help: "DEG"
     std::string_view help{};       ///< one sentence or two, without the value's name and default
     std::string_view standard{};   ///< the default in words, where --help states it
     NumberRule rule{};             ///< of a number
-    /// Of a choice, in the order of --help; an enumeration's in the order of its values.
+    /// Words of a choice, in the order of --help. For an enumeration: in the order of its values.
     std::span<const std::string_view> words{};
-    /// Of a text: whether it can be used, and what it must be. Empty: any.
+    /// Check of a text, and its rule in words. Empty: any text.
     bool (*isUsable)(std::string_view text) = nullptr;
     std::string_view textRule{};
 };
