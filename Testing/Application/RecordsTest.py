@@ -1,5 +1,6 @@
 """What a batch believes of an earlier run, and the page that it builds from the records of all."""
 
+import fcntl
 import gzip
 import json
 import os
@@ -313,6 +314,19 @@ class LeftByAKill(RecordsTest):
     def temporaries(self):
         return [p.name for p in self.path("out").iterdir() if p.name.startswith(".adaptiso-")]
 
+    def are_locked(self):
+        """True where there are temporaries, and their process holds the lock of each; a moment
+        after it has made one it does not, and another run may remove that one."""
+        def is_locked(name):
+            with open(self.path(f"out/{name}"), "rb") as file:
+                try:
+                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    return True
+            return False
+        names = self.temporaries()
+        return bool(names) and all(map(is_locked, names))
+
     def start(self):
         """A run that has seconds between its first temporary file and its end; stopped there."""
         process = subprocess.Popen([MESH, "noise.nii", "--iso", "100", "--iso", "150", "--method",
@@ -326,7 +340,7 @@ class LeftByAKill(RecordsTest):
                 time.sleep(0.001)
             process.send_signal(signal.SIGSTOP)
             os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
-            if self.temporaries():  # none between its two surfaces
+            if self.are_locked():  # there are none between its two surfaces
                 return process
             process.send_signal(signal.SIGCONT)
 
