@@ -29,7 +29,7 @@ void printSurface(std::ostream& out, HeadSurface which, const BemSurface& surfac
         << formatCount(surface.topology.triangles) << " triangles, edges "
         << formatFixed(surface.shape.edgeMm.minimum, 1) << " to "
         << formatFixed(surface.shape.edgeMm.maximum, 1) << " mm, angles from "
-        << formatFixed(surface.shape.minAngleDeg.minimum, 0) << " deg, volume "
+        << formatFixed(surface.shape.angleDeg.minimum, 0) << " deg, volume "
         << formatRounded(surface.volumeMm3 / 1000) << " cm3\n";
 }
 

@@ -15,6 +15,7 @@
 #include "Common/Warnings.h"
 #include "Run.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Json/OptionsJson.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/SurfaceChecks/CheckJson.h"
@@ -77,17 +78,13 @@ Json volumeJson(const CheckRun& run) {
 }
 
 Json optionsJson(const CheckOptions& options) {
-    return {{"inputCoordinates", inputCoordinatesJson(options.inputCoordinates)},
-            {"nested", options.isNested},
-            {"profile", toString(options.profileInUse())},
-            {"iso", orNull(options.isovalue)},
-            {"minGapMm", options.minGapMm.value_or(CheckOptions::kDefaultMinGapMm)},
-            {"minAngleDeg", options.minAngleDeg.value_or(CheckOptions::kDefaultMinAngleDeg)},
-            {"maxOffMm", orNull(options.maxOffMm)},
-            {"minWallMm", options.measuresWalls ? Json(options.wallLimitMm()) : Json(nullptr)},
-            {"maxPairs", options.maxPairs},
-            {"threads", orNull(options.common.threads)},
-            {"strict", options.common.isStrict}};
+    Json json{{"inputCoordinates", inputCoordinatesJson(options.inputCoordinates)},
+              {"nested", options.isNested},
+              {"iso", orNull(options.isovalue)}};
+    json.update(valuesJson(ruleOptions(), options.inUse()));
+    json["threads"] = orNull(options.common.threads);
+    json["strict"] = options.common.isStrict;
+    return json;
 }
 
 std::string_view word(const Check& check) {
@@ -149,7 +146,7 @@ void printFacts(std::ostream& out, const SurfaceFacts& facts) {
     out << '\n';
     if (facts.shape.triangles == 0) return;
     out << "  of triangles            smallest / median / largest\n";
-    printSpread(out, "smallest angle, degrees", facts.shape.minAngleDeg, 2);
+    printSpread(out, "smallest angle, degrees", facts.shape.angleDeg, 2);
     printSpread(out, "aspect ratio", facts.shape.aspectRatio, 2);
     printSpread(out, "edge, mm", facts.shape.edgeMm, 3);
 }
@@ -267,22 +264,13 @@ void addInputs(const CheckRun& run, Report& report) {
     report.inputs.insert(report.inputs.end(), facts.begin(), facts.end());
 }
 
-void addOptions(const CheckRun& run, Report& report) {
+void addRules(const CheckRun& run, Report& report) {
     const CheckOptions& options = run.options;
-    report.options = {{"Profile", std::string(toString(options.profileInUse()))},
-                      {"Nested", options.isNested ? "yes, from inside to outside" : "no"}};
-    if (options.isNested) {
-        report.options.push_back({"Smallest gap", formatNumber(options.minGapMm.value_or(
-                                                      CheckOptions::kDefaultMinGapMm)) +
-                                                      " mm or more"});
-    }
-    const double angleDeg = options.minAngleDeg.value_or(CheckOptions::kDefaultMinAngleDeg);
-    report.options.push_back({"Smallest angle", formatNumber(angleDeg) + "° or more"});
+    report.options = {{"Nested", options.isNested ? "yes, from inside to outside" : "no"}};
+    CheckRules rules = options.inUse();
+    if (!options.isNested) rules.minGapMm.reset();
+    addOptions(ruleOptions(), rules, report.options);
     if (options.isovalue) report.options.push_back({"Isovalue", formatNumber(*options.isovalue)});
-    if (options.maxOffMm) {
-        report.options.push_back(
-            {"Farthest from the isosurface", formatNumber(*options.maxOffMm) + " mm"});
-    }
 }
 
 ReportTable surfaceTable(const CheckRun& run) {
@@ -300,7 +288,7 @@ ReportTable surfaceTable(const CheckRun& run) {
                               formatCount(std::ssize(facts.topology.components)),
                               genus ? formatCount(*genus) : "–", formatMeasure(facts.areaMm2),
                               facts.volumeMm3 ? formatMeasure(*facts.volumeMm3) : "–",
-                              formatFixed(facts.shape.minAngleDeg.minimum, 2) + "°",
+                              formatFixed(facts.shape.angleDeg.minimum, 2) + "°",
                               formatLength(facts.shape.edgeMm.median, 2)});
         if (run.options.measuresWalls) table.rows.back().push_back(printText(facts));
     }
@@ -447,7 +435,7 @@ private:
     void addSliver() {
         const Check* check = failed(surface_.checks, "minAngle");
         if (!check) return;
-        const Spread& angles = surface_.facts.shape.minAngleDeg;
+        const Spread& angles = surface_.facts.shape.angleDeg;
         spots_.push_back({"smallest angle, " + formatFixed(angles.minimum, 2) + " degrees," + in_,
                           middleOf(mesh_, angles.triangleOfMinimum), check->isRequired});
     }
@@ -572,7 +560,7 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
     addNotes(run.notes, report);
     addVerdict(run, report);
     addInputs(run, report);
-    addOptions(run, report);
+    addRules(run, report);
     report.tables.push_back(surfaceTable(run));
     if (!run.nesting.empty()) report.tables.push_back(nestingTable(run));
     addSpots(run, shown, report);

@@ -41,27 +41,8 @@ void declareInput(CLI::App& app, CheckOptions& options) {
 
 void declareRequirements(CLI::App& app, CheckOptions& options) {
     const OptionGroup required(app, kRequired);
-    required.choice<Profile>(
-        "--profile", options.profile,
-        {{"bem", Profile::Bem}, {"print", Profile::Print}, {"view", Profile::View}},
-        "bem: a boundary of a head model (default with --nested); print: a solid (default); "
-        "view: to look at. See below");
-    const NumberRule length{.least = 0, .unit = "mm"};
-    required.number("--min-gap", "MM", options.minGapMm, length,
-                    "With --nested: smallest gap between neighbours that passes, in any profile "
-                    "(default: 0.5, in bem only)");
-    required.number(
-        "--min-angle", "DEG", options.minAngleDeg, {.least = 0, .most = 60, .unit = "degrees"},
-        "Smallest angle of a triangle that passes, 0 to 60, in any profile (default: 1, in "
-        "bem only)");
-    required.number("--min-wall", "MM", options.minWallMm,
-                    {.least = 0, .isAbove = true, .unit = "mm"},
-                    "Thinnest wall that passes, in any profile (with --profile print as given: a "
-                    "warning below 0.8)");
-    required.number(
-        "--max-off", "MM", options.maxOffMm, length,
-        "With --iso: largest distance from the isosurface that passes (default: the mean "
-        "within half a voxel)");
+    required.rows(ruleOptions(), options,
+                  {"profile", "min-gap", "min-angle", "min-wall", "max-off"});
 }
 
 void declareSelfTest(CLI::App& app, CheckOptions& options) {
@@ -84,11 +65,7 @@ void checkSelfTestAlone(const CLI::App& app) {
 
 void declareOutput(CLI::App& app, CheckOptions& options) {
     const OptionGroup output(app, kOutput);
-    constexpr std::int64_t kMaxPairs = 1'000'000'000;
-    output.count(
-        "--max-pairs", options.maxPairs, 0, kMaxPairs,
-        "List up to N pairs of triangles that cross in the report (default: 1000); all are "
-        "counted");
+    output.rows(ruleOptions(), options, {"max-pairs"});
     declareReportOptions(app, options.report, kOutput);
 }
 

@@ -20,7 +20,7 @@ namespace adaptiso::giant {
 struct GiantPlan {
     std::string version;          ///< of the program
     std::filesystem::path input;  ///< absolute
-    ReadOptions read;             ///< level, channel, timePoint, volumeIndex, series, refusals
+    ReadOptions read;             ///< which part of the image, and refusals
     std::string format;           ///< "OME-Zarr 0.4"
     ImageGeometry geometry;
     PixelType pixelType{};

@@ -159,20 +159,10 @@ void addOptions(const MeshRun& run, Report& report) {
             {"Isovalue", formatNumber(surface.isovalue) +
                              (surface.isAutomatic ? " (chosen by Otsu's method)" : "")});
     }
-    report.options.push_back({"Method", std::string(toString(options.extraction.method))});
-    if (options.extraction.adaptive.maxErrorMm) {
-        report.options.push_back(
-            {"Largest error", formatNumber(*options.extraction.adaptive.maxErrorMm) + " mm"});
-    }
-    report.options.push_back(
-        {"At the image's border", options.index.border == Border::Closed ? "closed" : "open"});
-    const ComponentSelection& selection = options.selection;
-    std::string pieces = selection.largestOnly ? "the largest only" : "all";
-    if (selection.minVolumeMm3 > 0) {
-        pieces += ", of " + formatNumber(selection.minVolumeMm3) + " mm³ or more";
-    }
-    if (selection.fillCavities) pieces += ", cavities filled";
-    report.options.push_back({"Pieces kept", pieces});
+    addOptions(methodOptions(), options.extraction, report.options);
+    addOptions(aimOptions(AimedSurface::OfScan), options.extraction.adaptive, report.options);
+    addOptions(indexOptions(), options.index, report.options);
+    addOptions(pieceOptions(), options.selection, report.options);
 }
 
 void addFindings(const SurfaceSummary& surface, Report& report) {

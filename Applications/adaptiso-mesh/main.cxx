@@ -70,9 +70,8 @@ void checkCombinations(const MeshOptions& options) {
     const bool isForAdaptive =
         !(options.extraction.adaptive == AdaptiveOptions{}) || options.verifies;
     if (isForAdaptive && options.extraction.method != Method::Adaptive) {
-        throw UsageError(
-            "--max-error, --triangles, --reduction, --min-angle and --verify are for --method "
-            "adaptive");
+        throw UsageError(namesOf(aimOptions(AimedSurface::OfScan)) +
+                         " and --verify are for --method adaptive");
     }
     requireOneCount(options.extraction.adaptive);
     if (options.extraction.discretized.mergeWithinBlocks &&

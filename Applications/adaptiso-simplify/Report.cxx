@@ -144,24 +144,6 @@ void addInputs(const SimplifyRun& run, Report& report) {
     }
 }
 
-void addOptions(const SimplifyCommand& command, Report& report) {
-    const SimplifyOptions& aim = command.aim;
-    if (aim.maxErrorMm) {
-        report.options.push_back({"Largest error", formatNumber(*aim.maxErrorMm) + " mm"});
-    }
-    if (aim.maxTriangles) {
-        report.options.push_back({"Triangles at most", formatCount(*aim.maxTriangles)});
-    }
-    if (aim.reduction) {
-        report.options.push_back({"Share of triangles to drop", formatNumber(*aim.reduction)});
-    }
-    if (aim.minAngleDeg > 0) {
-        report.options.push_back({"Smallest angle", formatNumber(aim.minAngleDeg) + "°"});
-    }
-    report.options.push_back(
-        {"Open borders", aim.keepBorders ? "kept as they are" : "simplified within the bound"});
-}
-
 void addFindings(const SimplifyRun& run, Report& report) {
     const auto add = [&](const std::string& subject, const std::string& name, bool holds,
                          const std::string& finding) {
@@ -246,7 +228,8 @@ Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh sh
     Report report;
     addVerdict(run, report);
     addInputs(run, report);
-    addOptions(run.command, report);
+    addOptions(aimOptions(AimedSurface::Mesh), run.command.aim, report.options);
+    addOptions(borderOptions(), run.command.aim, report.options);
     addFindings(run, report);
     const PageFrame frame = pageFrame(input);
     report.frame = frame.name;

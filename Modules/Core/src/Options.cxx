@@ -28,6 +28,21 @@ std::string countRule(std::int64_t least, std::int64_t most) {
                                                 : ", " + first + " or more");
 }
 
+std::int64_t mostOf(const NumberRule& rule) {
+    return rule.most ? static_cast<std::int64_t>(*rule.most) : kAnyCount;
+}
+
+std::string valueText(const OptionValue& value, const NumberRule& rule) {
+    if (const bool* isSet = std::get_if<bool>(&value)) return *isSet ? "yes" : "no";
+    if (const std::int64_t* count = std::get_if<std::int64_t>(&value)) return formatCount(*count);
+    if (const std::string* text = std::get_if<std::string>(&value)) return *text;
+    if (const double* number = std::get_if<double>(&value)) {
+        if (rule.unit == "degrees") return formatNumber(*number) + "°";
+        return formatNumber(*number) + (rule.unit.empty() ? "" : " ") + std::string(rule.unit);
+    }
+    return "none";
+}
+
 std::string helpText(const OptionFacts& facts, OptionKind kind) {
     std::string aside;
     if (kind == OptionKind::Number) aside = toWords(facts.rule);

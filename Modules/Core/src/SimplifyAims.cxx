@@ -13,6 +13,7 @@ constexpr std::string_view kDefaultBound =
 Options<SimplifyAims> rowsOf(AimedSurface surface) {
     OptionFacts bound{.name = "max-error",
                       .key = "maxErrorMm",
+                      .label = "Largest error",
                       .valueName = "MM",
                       .help =
                           "Method adaptive: largest distance, both ways, between the surface "
@@ -21,12 +22,14 @@ Options<SimplifyAims> rowsOf(AimedSurface surface) {
                       .rule = {.least = 0, .isAbove = true, .unit = "mm"}};
     OptionFacts count{.name = "triangles",
                       .key = "maxTriangles",
+                      .label = "Triangles at most",
                       .valueName = "N",
                       .help =
                           "Method adaptive: simplify to so many triangles, of the pieces that are "
                           "kept, as close to that surface as the method gets"};
     OptionFacts share{.name = "reduction",
                       .key = "reduction",
+                      .label = "Share of triangles to drop",
                       .valueName = "F",
                       .help = "Method adaptive: share of the triangles of marching cubes to drop",
                       .rule = {.least = 0, .most = 1}};
@@ -51,6 +54,7 @@ Options<SimplifyAims> rowsOf(AimedSurface surface) {
     }
     const OptionFacts angle{.name = "min-angle",
                             .key = "minAngleDeg",
+                            .label = "Smallest angle",
                             .valueName = "DEG",
                             .help = "Make no new angle below this, at the price of more triangles",
                             .standard = "0",

@@ -230,17 +230,20 @@ const Options<ComponentSelection>& pieceOptions() {
         option<&ComponentSelection::largestOnly>(
             {.name = "largest",
              .key = "largest",
+             .label = "The largest piece alone",
              .help = "Keep the piece with the most material only (of an open surface: the largest "
                      "area)"}),
         option<&ComponentSelection::minVolumeMm3>(
             {.name = "min-volume",
              .key = "minVolumeMm3",
+             .label = "Pieces of at least",
              .valueName = "MM3",
              .help = "Drop pieces with less material than this, and fill cavities with less",
              .rule = {.least = 0, .unit = "mm3"}}),
         option<&ComponentSelection::fillCavities>(
             {.name = "fill-cavities",
              .key = "fillCavities",
+             .label = "Cavities filled",
              .help = "Drop inner surfaces, and all that lies inside them"})};
     return rows;
 }

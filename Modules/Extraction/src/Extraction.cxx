@@ -28,6 +28,7 @@ const Options<ExtractionOptions>& methodOptions() {
     static const Options<ExtractionOptions> rows{option<&ExtractionOptions::method>(
         {.name = "method",
          .key = "method",
+         .label = "Method",
          .help =
              "adaptive: few triangles within a stated distance of the surface, none crossing "
              "another; boxes: cubes of several sizes, merged where the surface is flat; dmc: "

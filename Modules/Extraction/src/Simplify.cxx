@@ -134,6 +134,7 @@ const Options<SimplifyOptions>& borderOptions() {
     static const Options<SimplifyOptions> rows{option<&SimplifyOptions::keepBorders>(
         {.name = "keep-borders",
          .key = "keepBorders",
+         .label = "Open borders kept",
          .help = "Leave the points of open borders where they are, to the bit"})};
     return rows;
 }

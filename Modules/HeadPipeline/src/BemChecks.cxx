@@ -31,7 +31,7 @@ Vec3 placeOf(const Check& check, const SurfaceFacts& facts, const TriangleMesh& 
         return facts.firstCrossingMm;
     }
     if (check.key == "minAngle" && facts.shape.triangles > 0) {
-        return middleOf(mesh, facts.shape.minAngleDeg.triangleOfMinimum);
+        return middleOf(mesh, facts.shape.angleDeg.triangleOfMinimum);
     }
     if (check.key == "noDuplicateVertices" && !facts.duplicates.vertices.empty()) {
         return mesh.points[facts.duplicates.vertices.front()];

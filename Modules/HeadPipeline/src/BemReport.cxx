@@ -134,7 +134,7 @@ ReportTable surfaceTable(const BemModel& model) {
              formatRounded(surface.volumeMm3 / 1000),
              formatFixed(surface.shape.edgeMm.minimum, 1) + " to " +
                  formatFixed(surface.shape.edgeMm.maximum, 1),
-             formatFixed(surface.shape.minAngleDeg.minimum, 1) + "°",
+             formatFixed(surface.shape.angleDeg.minimum, 1) + "°",
              remesh ? formatFixed(remesh->meanVertexDistanceMm, 2) + ", " +
                           formatFixed(remesh->maximumVertexDistanceMm, 2)
                     : "as it came",

@@ -45,9 +45,9 @@ constexpr const char* kRepeated =
            "keep one volume in the folder");
 }
 
-/// The planes of the one volume to read.
-std::vector<DicomPlane> chooseVolume(const fs::path& input, const std::vector<DicomFile>& files,
-                                     const DicomGroup& group, std::optional<std::int64_t> wanted) {
+/// The planes of the one volume to read. \param options  null: the first
+std::vector<DicomPlane> chosenPlanes(const fs::path& input, const std::vector<DicomFile>& files,
+                                     const DicomGroup& group, const ReadOptions* options) {
     if (dicomPlaces(group.planes).size() == 1 && !group.isSegmentation) {
         refuse(input,
                fmt::format("all of its {} slices lie at the same position: no volume",
@@ -57,31 +57,30 @@ std::vector<DicomPlane> chooseVolume(const fs::path& input, const std::vector<Di
     DicomVolumes split = splitDicomVolumes(group.planes);
     const std::int64_t count = std::ssize(split.volumes);
     if (count == 0) refuseRepeated(input, files, group);
-    if (wanted ? *wanted < 0 || *wanted >= count : count > 1) {
-        refuse(input,
-               count == 1 ? fmt::format("holds one volume, there is no volume {}", *wanted)
-                          : fmt::format("is a 4-D image: {} volumes at the same position ({}{})",
-                                        count, split.kind, group.isMosaic ? "; mosaics" : ""),
-               fmt::format("choose one: --volume-index 0 to {}", count - 1));
-    }
-    return std::move(split.volumes[static_cast<std::size_t>(wanted.value_or(0))]);
+    if (options == nullptr) return std::move(split.volumes.front());
+    const std::int64_t chosen =
+        chooseVolume(input, count, *options,
+                     fmt::format("is a 4-D image: {} volumes at the same position ({}{})", count,
+                                 split.kind, group.isMosaic ? "; mosaics" : ""));
+    return std::move(split.volumes[static_cast<std::size_t>(chosen)]);
 }
 
+/// \param options  null: of the first volume, for a list
 DicomStack stackOf(const fs::path& input, const std::vector<DicomFile>& files,
-                   const DicomGroup& group, const ReadOptions& options) {
+                   const DicomGroup& group, const ReadOptions* options) {
     if (!group.fault.empty()) throw FileError(group.fault);
     if (group.planes.size() == 1 && !group.isSegmentation) {
         refuse(input, "is a single DICOM slice, a surface needs a volume", kGiveAll);
     }
     requirePlacedPlanes(files, group);
-    std::vector<DicomPlane> planes = chooseVolume(input, files, group, options.volumeIndex);
+    std::vector<DicomPlane> planes = chosenPlanes(input, files, group, options);
     std::vector<Warning> warnings = group.warnings;
     requireAgreement(input, files, planes, warnings);
     requireWholeConcatenation(input, files, planes);
     warnOfFewer(files, group, planes.size(), warnings);
     DicomStack stack = group.isSegmentation ? stackSegmentFrames(input, group, std::move(planes))
                                             : stackDicomPlanes(input, group, std::move(planes),
-                                                               options.resampleSlices);
+                                                               options && options->resampleSlices);
     stack.warnings.insert(stack.warnings.end(), warnings.begin(), warnings.end());
     return stack;
 }
@@ -109,7 +108,7 @@ ReadVolume readImages(const fs::path& input, DicomInput images, const ReadOption
     std::vector<Warning> warnings = std::move(images.warnings);
     const std::vector<DicomGroup> groups = groupDicomPlanes(images.files);
     const DicomGroup& group = groups[chooseDicomGroup(input, groups, options.series, warnings)];
-    const DicomStack stack = stackOf(input, images.files, group, options);
+    const DicomStack stack = stackOf(input, images.files, group, &options);
     requireUsableGeometry(input, stack.geometry);
     warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
     const auto decode = [&] {
@@ -126,13 +125,11 @@ ReadVolume readImages(const fs::path& input, DicomInput images, const ReadOption
 /// Fills in what reading the group would give, or why it can't be read.
 void tryGroup(const fs::path& input, const std::vector<DicomFile>& files, const DicomGroup& group,
               DicomSeries& series) {
-    ReadOptions options;
     if (group.fault.empty() && group.isPlaced() && dicomPlaces(group.planes).size() > 1) {
         series.volumes = std::ssize(splitDicomVolumes(group.planes).volumes);
-        if (series.volumes > 1) options.volumeIndex = 0;
     }
     try {
-        const DicomStack stack = stackOf(input, files, group, options);
+        const DicomStack stack = stackOf(input, files, group, nullptr);
         series.slices = stack.geometry.size[2];
         series.spacingMm[2] = norm(stack.geometry.indexToPhysical.column[2]);
         series.warnings = stack.warnings;

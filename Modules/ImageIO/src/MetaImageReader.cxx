@@ -363,7 +363,7 @@ ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
     const std::uint64_t byteCount =
         requireProduct(file, requireImageBytes(file, extents.size, layout.stored),
                        static_cast<std::uint64_t>(extents.volumeCount));
-    layout.volumeIndex = chooseVolume(file, extents.volumeCount, options);
+    layout.volume = chooseVolume(file, extents.volumeCount, options);
     layout.byteOrder = byteOrderOf(file, header, layout.stored);
     parseScaling(file, header, layout, warnings);
     const ImageGeometry geometry = geometryOf(file, header, extents, warnings);

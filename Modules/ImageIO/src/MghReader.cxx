@@ -109,7 +109,7 @@ ReadVolume readMgh(const fs::path& file, const ReadOptions& options) {
     SampleLayout layout{pixelTypeOfCode(file, bytes.at<std::int32_t>(20)), std::endian::big};
     layout.volumeCount = frames;
     requireImageBytes(file, size, layout.stored);
-    layout.volumeIndex = chooseVolume(file, frames, options);
+    layout.volume = chooseVolume(file, frames, options);
     std::vector<Warning> warnings;
     const ImageGeometry geometry = geometryOf(bytes, size, warnings);
     DataPlace place{file, file, ByteSource::encodingOf(file)};

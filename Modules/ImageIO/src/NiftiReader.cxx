@@ -556,9 +556,11 @@ ReadVolume readNifti(const fs::path& input, const ReadOptions& options) {
     layout.volumeCount = extents.volumeCount;
     requireImageBytes(headerFile, extents.size, layout.stored);
     const std::string_view components = componentsOf(header.intent);
-    layout.volumeIndex =
-        chooseVolume(headerFile, extents.volumeCount, options,
-                     components.empty() ? "volumes" : fmt::format("components of {}", components));
+    layout.volume = chooseVolume(
+        headerFile, extents.volumeCount, options,
+        components.empty()
+            ? ""
+            : fmt::format("is 4-D: it holds {} components of {}", extents.volumeCount, components));
     const ImageGeometry geometry = geometryOf(headerFile, header, extents.size, warnings);
 
     const fs::path dataFile =

@@ -86,7 +86,9 @@ ReadVolume readNrrd(const fs::path& file, const ReadOptions& options) {
     SampleLayout layout{pixelTypeOf(file, header)};
     layout.volumeCount = axes.volumeCount;
     requireImageBytes(file, axes.size, layout.stored);
-    layout.volumeIndex = chooseVolume(file, axes.volumeCount, options, volumesNameOf(header));
+    layout.volume = chooseVolume(
+        file, axes.volumeCount, options,
+        fmt::format("is 4-D: it holds {} {}", axes.volumeCount, volumesNameOf(header)));
     layout.isInterleaved = axes.volumeAxis == 0U;
     std::vector<Warning> warnings;
     const ImageGeometry geometry = geometryOf(file, header, axes, warnings);

@@ -21,7 +21,7 @@ std::int64_t readConverted(ByteSource& source, const SampleLayout& layout, std::
                            Out* out) {
     std::int64_t overflows = 0;
     const std::int64_t stride = layout.isInterleaved ? layout.volumeCount : 1;
-    const std::int64_t first = layout.isInterleaved ? layout.volumeIndex : 0;
+    const std::int64_t first = layout.isInterleaved ? layout.volume : 0;
     constexpr std::int64_t kPieceSamples = 1 << 17;
     const std::int64_t pieceVoxels = std::max<std::int64_t>(1, kPieceSamples / stride);
     std::vector<Stored> piece(static_cast<std::size_t>(std::min(pieceVoxels, count) * stride));
@@ -179,20 +179,15 @@ void swapBytes(std::byte* samples, std::uint64_t byteCount, std::size_t bytesPer
     }
 }
 
-std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t volumeCount,
-                          const ReadOptions& options, std::string_view name) {
-    const auto refused = [&](const std::string& fault) {
-        refuse(file, fault, fmt::format("choose one: --volume-index 0 to {}", volumeCount - 1));
-    };
-    if (!options.volumeIndex) {
-        if (volumeCount > 1) refused(fmt::format("is 4-D: it holds {} {}", volumeCount, name));
-        return 0;
-    }
-    if (*options.volumeIndex < 0 || *options.volumeIndex >= volumeCount) {
-        refused(
-            fmt::format("there is no volume {}: it holds {}", *options.volumeIndex, volumeCount));
-    }
-    return *options.volumeIndex;
+std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t count,
+                          const ReadOptions& options, const std::string& several) {
+    const std::optional<std::int64_t> chosen = options.volumeIndex;
+    if (chosen ? *chosen >= 0 && *chosen < count : count == 1) return chosen.value_or(0);
+    const std::string fault =
+        chosen            ? fmt::format("there is no volume {}: it holds {}", *chosen, count)
+        : several.empty() ? fmt::format("is 4-D: it holds {} volumes", count)
+                          : several;
+    refuse(file, fault, fmt::format("choose one: --volume-index 0 to {}", count - 1));
 }
 
 Volume readSamples(const std::filesystem::path& file, ByteSource& source,
@@ -201,7 +196,7 @@ Volume readSamples(const std::filesystem::path& file, ByteSource& source,
     requireUsableGeometry(file, geometry);
     const auto volumes = static_cast<std::uint64_t>(layout.volumeCount);
     source.requireRoomFor(requireProduct(file, volumes, volumeBytes));
-    const auto volumesBefore = static_cast<std::uint64_t>(layout.volumeIndex);
+    const auto volumesBefore = static_cast<std::uint64_t>(layout.volume);
     if (!layout.isInterleaved) source.skip(volumesBefore * volumeBytes);
 
     const PixelType type = layout.isScaled ? floatTypeFor(layout.stored) : layout.stored;

@@ -64,18 +64,18 @@ struct SampleLayout {
     double slope = 1;
     double intercept = 0;
     std::int64_t volumeCount = 1;  ///< of one size, one after the other
-    std::int64_t volumeIndex = 0;  ///< the one to read
+    std::int64_t volume = 0;       ///< the one to read, from 0
     bool isInterleaved = false;    ///< or all volumes' samples of a voxel side by side
 
     /// "scl_slope 0.5, scl_inter 0"; empty where nothing is scaled.
     std::string scalingText(const char* slopeName, const char* interceptName) const;
 };
 
-/// The volume to read of a file that holds `volumeCount`.
-/// \throws FileError when there are several and none is asked for, or one that is not there
-/// \param name  for the message
-std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t volumeCount,
-                          const ReadOptions& options, std::string_view name = "volumes");
+/// The volume to read of a file that holds `count`.
+/// \param several  what is said of several: "is 4-D: it holds 3 volumes", where empty
+/// \throws FileError  there are several and none was chosen, or one that is not there
+std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t count,
+                          const ReadOptions& options, const std::string& several = {});
 
 /// Reads exactly the geometry's voxels, checks that the file holds the other volumes too, and wraps
 /// the samples up. What follows in the file is `source`'s tail then.

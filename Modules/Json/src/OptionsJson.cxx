@@ -48,7 +48,10 @@ Json factsJson(const OptionFacts& facts, OptionKind kind, const OptionValue& sta
         if (facts.rule.most) json["most"] = *facts.rule.most;
         if (!facts.rule.unit.empty()) json["unit"] = facts.rule.unit;
     }
-    if (kind == OptionKind::Count) json["rule"] = countRule(0, kAnyCount);
+    if (kind == OptionKind::Count) {
+        json["rule"] = countRule(0, mostOf(facts.rule));
+        if (facts.rule.most) json["most"] = mostOf(facts.rule);
+    }
     if (kind == OptionKind::Text) json["rule"] = facts.textRule;
     if (!facts.words.empty()) json["words"] = facts.words;
     return json;

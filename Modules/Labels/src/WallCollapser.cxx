@@ -32,13 +32,13 @@ double largestCosine(const std::array<Vec3, 3>& c) {
 }  // namespace
 
 WallCollapser::WallCollapser(const WallPatch& patch, const ImageGeometry& geometry,
-                             double minAngleDeg)
+                             double leastAngleDeg)
     : patch_(patch),
       mesh_(patch),
       centres_(geometry),
       firstNew_(static_cast<Id>(mesh_.pointCount())),
       voxelMm_(portable::cubeRoot(geometry.voxelVolumeMm3())),
-      largestCosine_(portable::cos(minAngleDeg * std::numbers::pi / 180)),
+      largestCosine_(portable::cos(leastAngleDeg * std::numbers::pi / 180)),
       quadrics_(mesh_.pointCount()),
       origin_(mesh_.pointCount(), kNone),
       tried_(mesh_.pointCount(), -1),

@@ -39,7 +39,7 @@ public:
     static constexpr Id kNone = WallMesh::kNone;
 
     /// \param patch  must live as long
-    WallCollapser(const WallPatch& patch, const ImageGeometry& geometry, double minAngleDeg);
+    WallCollapser(const WallPatch& patch, const ImageGeometry& geometry, double leastAngleDeg);
 
     const WallMesh& mesh() const { return mesh_; }
     double voxelMm() const { return voxelMm_; }

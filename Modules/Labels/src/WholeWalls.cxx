@@ -370,7 +370,7 @@ WholeWalls::Made WholeWalls::simplifyOne(const CubeCut& cut, const Lists& lists,
     if (lists.own.of(cube).empty() && lists.beside.of(cube).empty()) return made;
     Numbers numbers;
     const WallPatch patch = patchOf(cut, lists, cube, numbers);
-    WallCollapser collapser(patch, geometry_, aim.minAngleDeg);
+    WallCollapser collapser(patch, geometry_, aim.leastAngleDeg);
     made.boundMm = simplifyPatch(collapser, aim);
     const WallMesh& mesh = collapser.mesh();
     const Id firstPoint = mesh.firstPoint(), firstTriangle = mesh.firstTriangle();
@@ -506,7 +506,7 @@ SimplifiedWalls simplifyWalls(LabelComplex&& full, const ImageGeometry& geometry
     WallAim aim;
     aim.limitMm = aims.maxErrorMm.value_or(0.05 * h);
     aim.mayGrow = !aims.maxErrorMm;
-    aim.minAngleDeg = aims.minAngleDeg;
+    aim.leastAngleDeg = aims.minAngleDeg;
     aim.enough = aims.maxTriangles.value_or(0);
     SimplifiedWalls walls;
     WholeWalls whole(std::move(full), geometry);

@@ -14,10 +14,10 @@ namespace adaptiso::detail {
 
 /// Goals of simplification.
 struct WallAim {
-    double limitMm = 0;       ///< between them and the full ones, both ways
-    bool mayGrow = false;     ///< the limit may be passed; the bound then says by how much
-    std::int64_t enough = 0;  ///< triangles below which nothing more is done
-    double minAngleDeg = 0;   ///< no smaller one is made
+    double limitMm = 0;        ///< between them and the full ones, both ways
+    bool mayGrow = false;      ///< the limit may be passed; the bound then says by how much
+    std::int64_t enough = 0;   ///< triangles below which nothing more is done
+    double leastAngleDeg = 0;  ///< no smaller one is made
 };
 
 /// Division of space into cubes, by planes across each axis of the image.

@@ -57,7 +57,7 @@ private:
 };
 
 /// The angle opposite the shortest side, degrees. \pre edges[n] is opposite corner n
-double minAngleDeg(const Corners& t, const std::array<double, 3>& edges, double area2) {
+double smallestAngleDeg(const Corners& t, const std::array<double, 3>& edges, double area2) {
     const auto n = std::min_element(edges.begin(), edges.end()) - edges.begin();
     const Vec3 &apex = t[n], &p = t[(n + 1) % 3], &q = t[(n + 2) % 3];
     return std::atan2(area2, dot(p - apex, q - apex)) * (180 / std::numbers::pi);
@@ -77,7 +77,7 @@ ShapeReport measureShape(const TriangleMesh& mesh) {
         ++report.triangles;
         const std::array<double, 3> edges{norm(t[2] - t[1]), norm(t[0] - t[2]), norm(t[1] - t[0])};
         const double area2 = norm(areaVector2(t[0], t[1], t[2]));
-        angles.add(minAngleDeg(t, edges, area2), n);
+        angles.add(smallestAngleDeg(t, edges, area2), n);
         const double longest = *std::max_element(edges.begin(), edges.end());
         aspects.add(area2 > 0 ? longest * (edges[0] + edges[1] + edges[2]) /
                                     (2 * std::numbers::sqrt3 * area2)
@@ -85,7 +85,7 @@ ShapeReport measureShape(const TriangleMesh& mesh) {
                     n);
         for (const double edge : edges) lengths.add(edge, n);
     }
-    report.minAngleDeg = angles.spread();
+    report.angleDeg = angles.spread();
     report.aspectRatio = aspects.spread();
     report.edgeMm = lengths.spread();
     return report;

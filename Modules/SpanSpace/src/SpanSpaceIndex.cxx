@@ -98,6 +98,7 @@ const Options<IndexOptions>& indexOptions() {
         option<&IndexOptions::border>(
             {.name = "border",
              .key = "border",
+             .label = "At the image's border",
              .help = "Where a surface meets the border of the image: closed there, or left open",
              .standard = "closed",
              .words = kBorders}),

@@ -203,7 +203,7 @@ Json factsJson(const SurfaceFacts& facts) {
                                         facts.intersections.isComplete, facts.intersections.pairs)},
         {"shape",
          {{"triangles", facts.shape.triangles},
-          {"minAngleDeg", spreadJson(facts.shape.minAngleDeg)},
+          {"minAngleDeg", spreadJson(facts.shape.angleDeg)},
           {"aspectRatio", spreadJson(facts.shape.aspectRatio)},
           {"edgeMm", spreadJson(facts.shape.edgeMm)}}}};
 }

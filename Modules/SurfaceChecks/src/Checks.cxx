@@ -99,6 +99,8 @@ struct Rule {
     }
 };
 
+constexpr std::array<std::string_view, 3> kProfiles{"bem", "print", "view"};
+
 // adaptiso-check's README.md and --help say the same in words.
 constexpr Rule kFinite{"finiteCoordinates", "finite coordinates", true, true, true};
 constexpr Rule kIndices{"indicesInRange", "indices in range", true, true, true};
@@ -115,7 +117,7 @@ constexpr Rule kDuplicateTriangles{"noDuplicateTriangles", "no duplicate triangl
 constexpr Rule kDuplicateVertices{"noDuplicateVertices", "no duplicate vertex", true, false, false};
 constexpr Rule kUnused{"noUnusedVertices", "no unused vertex", true, false, false};
 constexpr Rule kCrossings{"noSelfIntersections", "no self-intersection", true, true, false};
-constexpr Rule kMinAngle{"minAngle", "smallest angle", true, false, false};
+constexpr Rule kLeastAngle{"minAngle", "smallest angle", true, false, false};
 constexpr Rule kSize{"plausibleSize", "size plausible in mm", true, true, false};
 constexpr Rule kMinWall{"minWall", "walls", false, false, false};
 constexpr Rule kSolidAngle{"solidAngle", "MNE's solid angle", true, false, false};
@@ -345,18 +347,18 @@ private:
     }
 
     void judgeAngle() {
-        const Spread& angles = facts_.shape.minAngleDeg;
+        const Spread& angles = facts_.shape.angleDeg;
         if (facts_.shape.triangles == 0) {
-            return add(kMinAngle, Outcome::Undecided, "there is no triangle to measure");
+            return add(kLeastAngle, Outcome::Undecided, "there is no triangle to measure");
         }
-        const double limit = rules_.minAngleDeg.value_or(CheckRules::kDefaultMinAngleDeg);
+        const double limit = rules_.minAngleDeg.value_or(CheckRules::kLeastAngleDeg);
         const bool holds = angles.minimum >= limit;
         std::string finding = formatFixed(angles.minimum, 2) + " degrees";
         if (!holds) {
             finding += " in triangle " + std::to_string(angles.triangleOfMinimum) +
                        ", must be at least " + formatNumber(limit);
         }
-        add(kMinAngle, holds, finding);
+        add(kLeastAngle, holds, finding);
         checks_.back().isRequired |= rules_.minAngleDeg.has_value();
     }
 
@@ -433,8 +435,68 @@ std::string relationText(const NestingReport& report, const std::string& inner,
 }  // namespace
 
 std::string_view toString(Profile profile) {
-    constexpr const char* kWords[] = {"bem", "print", "view"};
-    return kWords[static_cast<std::size_t>(profile)];
+    return kProfiles[static_cast<std::size_t>(profile)];
+}
+
+CheckRules CheckRules::inUse() const {
+    CheckRules rules = *this;
+    rules.profile = profileInUse();
+    rules.minGapMm = minGapMm.value_or(kDefaultMinGapMm);
+    rules.minAngleDeg = minAngleDeg.value_or(kLeastAngleDeg);
+    if (measuresWalls) rules.minWallMm = wallLimitMm();
+    return rules;
+}
+
+const Options<CheckRules>& ruleOptions() {
+    static const Options<CheckRules> rows{
+        option<&CheckRules::profile>(
+            {.name = "profile",
+             .key = "profile",
+             .label = "Profile",
+             .help = "bem: a boundary of a head model (default with --nested); print: a solid "
+                     "(default); view: to look at. See below",
+             .words = kProfiles}),
+        option<&CheckRules::minGapMm>(
+            {.name = "min-gap",
+             .key = "minGapMm",
+             .label = "Smallest gap",
+             .valueName = "MM",
+             .help = "With --nested: smallest gap between neighbours that passes, in any profile",
+             .standard = "0.5, in bem only",
+             .rule = {.least = 0, .unit = "mm"}}),
+        option<&CheckRules::minAngleDeg>(
+            {.name = "min-angle",
+             .key = "minAngleDeg",
+             .label = "Smallest angle",
+             .valueName = "DEG",
+             .help = "Smallest angle of a triangle that passes, in any profile",
+             .standard = "1, in bem only",
+             .rule = {.least = 0, .most = 60, .unit = "degrees"}}),
+        option<&CheckRules::minWallMm>(
+            {.name = "min-wall",
+             .key = "minWallMm",
+             .label = "Thinnest wall",
+             .valueName = "MM",
+             .help = "Thinnest wall that passes, in any profile",
+             .standard = "with --profile print as given a warning below 0.8",
+             .rule = {.least = 0, .isAbove = true, .unit = "mm"}}),
+        option<&CheckRules::maxOffMm>(
+            {.name = "max-off",
+             .key = "maxOffMm",
+             .label = "Farthest from the isosurface",
+             .valueName = "MM",
+             .help = "With --iso: largest distance from the isosurface that passes",
+             .standard = "the mean within half a voxel",
+             .rule = {.least = 0, .unit = "mm"}}),
+        option<&CheckRules::maxPairs>(
+            {.name = "max-pairs",
+             .key = "maxPairs",
+             .valueName = "N",
+             .help = "List up to so many pairs of triangles that cross in the report; all are "
+                     "counted",
+             .standard = "1000",
+             .rule = {.most = 1e9}})};
+    return rows;
 }
 
 SizeLimits sizeLimitsOf(Profile profile) {

@@ -45,8 +45,10 @@ void expectVolumes(const TempFolder& folder, int volumes, std::string_view kind)
         EXPECT_EQ(read.volume.view().geometry().size[2], kSlices);
         expectField(read.volume, [v](const Vec3& p) { return fieldOfVolume(p, v); });
     }
-    expectRefusal(folder.path(), "4-D", {.volumeIndex = volumes});
-    expectRefusal(folder.path(), "4-D", {.volumeIndex = -1});
+    for (const int none : {volumes, -1}) {
+        expectRefusal(folder.path(), "there is no volume " + std::to_string(none) + ": it holds",
+                      {.volumeIndex = none});
+    }
 }
 
 TEST(DicomVolumes, AreToldApartByEcho) {
@@ -118,7 +120,7 @@ TEST(DicomVolumes, OneVolumeIsVolumeZero) {
     const TempFolder folder;
     writeVolumes(folder, 1, [](DicomBuilder&, int, int) {});
     EXPECT_NO_THROW(readVolume(folder.path(), {.volumeIndex = 0}));
-    expectRefusal(folder.path(), "holds one volume", {.volumeIndex = 1});
+    expectRefusal(folder.path(), "there is no volume 1: it holds 1", {.volumeIndex = 1});
 }
 
 TEST(DicomVolumes, ImageTypesMayDifferWithinOneVolume) {

@@ -74,7 +74,7 @@ TEST(Shape, RightTriangleOfThreeFourFive) {
     // angle is 3/4
     const ShapeReport report = measureShape(oneTriangle({0, 0, 7}, {4, 0, 7}, {0, 3, 7}));
     EXPECT_EQ(report.triangles, 1);
-    EXPECT_DOUBLE_EQ(report.minAngleDeg.minimum, std::atan2(3, 4) * 180 / std::acos(-1));
+    EXPECT_DOUBLE_EQ(report.angleDeg.minimum, std::atan2(3, 4) * 180 / std::acos(-1));
     EXPECT_DOUBLE_EQ(report.aspectRatio.maximum, 5 / (2 * std::sqrt(3)));
     EXPECT_EQ(report.edgeMm.minimum, 3);
     EXPECT_EQ(report.edgeMm.median, 4);
@@ -91,9 +91,9 @@ TEST(Shape, EquilateralIsOneAndFlatInfinite) {
     EXPECT_NEAR(report.aspectRatio.minimum, 1, 1e-15);  // a few roundings
     EXPECT_EQ(report.aspectRatio.maximum, std::numeric_limits<double>::infinity());
     EXPECT_EQ(report.aspectRatio.triangleOfMaximum, 1);
-    EXPECT_EQ(report.minAngleDeg.minimum, 0);
-    EXPECT_EQ(report.minAngleDeg.triangleOfMinimum, 1);
-    EXPECT_NEAR(report.minAngleDeg.maximum, 60, 1e-13);
+    EXPECT_EQ(report.angleDeg.minimum, 0);
+    EXPECT_EQ(report.angleDeg.triangleOfMinimum, 1);
+    EXPECT_NEAR(report.angleDeg.maximum, 60, 1e-13);
 }
 
 TEST(Shape, LeavesOutWhatIsNoTriangle) {

@@ -14,7 +14,7 @@ from ._adaptiso import Error
 Result = TypeVar("Result")
 Progress = Callable[[str, float], object]
 
-_LARGEST_COUNT = 2**53
+LARGEST_COUNT = 2**53
 
 
 class Warned(str):
@@ -76,9 +76,9 @@ def optional_number(name: str, value: Any, rule: str,
     return None if value is None else number(name, value, rule, holds)
 
 
-def count(name: str, value: Any, least: int = 0, most: int = _LARGEST_COUNT) -> int:
+def count(name: str, value: Any, least: int = 0, most: int = LARGEST_COUNT) -> int:
     """`value` as a whole number from `least` to `most`. \\raises Error"""
-    rule = f"a whole number from {least}" + (f" to {most}" if most < _LARGEST_COUNT else "")
+    rule = f"a whole number from {least}" + (f" to {most}" if most < LARGEST_COUNT else "")
     if isinstance(value, bool):
         raise Error(f"{name} {shown(value)}: must be {rule}")
     try:

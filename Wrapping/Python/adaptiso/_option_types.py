@@ -15,6 +15,19 @@ class SurfaceOptions(TypedDict, total=False):
     fill_cavities: Optional[bool]
 
 
+class CheckOptions(TypedDict, total=False):
+    min_angle: Optional[float]
+    min_wall: Optional[float]
+    max_pairs: Optional[int]
+
+
+class CheckNestedOptions(TypedDict, total=False):
+    min_gap: Optional[float]
+    min_angle: Optional[float]
+    min_wall: Optional[float]
+    max_pairs: Optional[int]
+
+
 class SimplifyOptions(TypedDict, total=False):
     max_error: Optional[float]
     triangles: Optional[int]
@@ -52,3 +65,12 @@ class ReadOptions(TypedDict, total=False):
     time: Optional[int]
     all_chunks: Optional[bool]
     resample_slices: Optional[bool]
+
+
+class GiantOptions(TypedDict, total=False):
+    series: Optional[str]
+    volume_index: Optional[int]
+    zarr_level: Optional[int]
+    channel: Optional[int]
+    time: Optional[int]
+    all_chunks: Optional[bool]

@@ -10,24 +10,28 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, TypeVar
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import count, flag, number, shown, word
+from ._arguments import LARGEST_COUNT, count, flag, number, shown, word
 
 _Row = Dict[str, Any]
 _ROWS: Dict[str, List[_Row]] = json.loads(_adaptiso.option_rows())
 # of refusals in which users know the argument by an older name
 _NAMES = {"refuse-missing-chunks": "all_chunks"}
+# `level` is the isovalue there
+_OWN_NAMES = {("giant", "level"): "zarr_level"}
 _TYPES = {"flag": "bool", "number": "float", "count": "int", "choice": "str", "text": "str"}
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
-def _name(row: _Row) -> str:
-    return _NAMES.get(row["name"], str(row["name"]).replace("-", "_"))
+def _name(subject: str, row: _Row) -> str:
+    name = str(row["name"])
+    plain = _NAMES.get(name, name.replace("-", "_"))
+    return _OWN_NAMES.get((subject, name), plain)
 
 
 def rows(subject: str) -> Dict[str, _Row]:
     """The rows of a function, by the names of its arguments."""
-    return {_name(row): row for row in _ROWS[subject]}
+    return {_name(subject, row): row for row in _ROWS[subject]}
 
 
 def checked(subject: str, given: Mapping[str, Any], function: str = "") -> Dict[str, Any]:
@@ -43,6 +47,16 @@ def checked(subject: str, given: Mapping[str, Any], function: str = "") -> Dict[
     return options
 
 
+def program_options(subject: str, given: Mapping[str, Any], function: str = "") -> List[str]:
+    """The same for a program. \\raises Error"""
+    options = []
+    for name, value in checked(subject, given, function).items():
+        option = "--" + name.replace("_", "-")
+        if value is not False:
+            options.append(option if value is True else f"{option}={value}")
+    return options
+
+
 def _may_be_none(row: _Row) -> bool:
     """A default of 0 that is stated in words stands for not given."""
     return row["default"] is None or (row["default"] == 0 and "standard" in row)
@@ -53,7 +67,7 @@ def _checked(name: str, value: Any, row: _Row) -> Any:
     if kind == "number":
         return number(name, value, row["rule"], lambda given: _allows(row, given))
     if kind == "count":
-        return count(name, value)
+        return count(name, value, most=row.get("most", LARGEST_COUNT))
     if kind == "choice":
         return word(name, value, row["words"])
     if kind == "flag":
@@ -104,7 +118,8 @@ def type_text() -> str:
     lines = ['"""Types of keyword arguments, made from the library\'s rows of options. Do not edit."""',
              "", "from typing import Literal, Optional, TypedDict"]
     for subject in _ROWS:
-        lines += ["", "", f"class {subject.capitalize()}Options(TypedDict, total=False):"]
+        name = subject.title().replace("_", "")
+        lines += ["", "", f"class {name}Options(TypedDict, total=False):"]
         for name, row in rows(subject).items():
             words = row.get("words")
             kind = f"Literal[{', '.join(json.dumps(each) for each in words)}]" if words else \

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Union
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, flag, is_path, listed, optional_number, path as checked_path,
+from ._arguments import (Progress, count, flag, is_path, listed, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads, word)
 from ._images import base_name
 from ._mesh import Mesh, mesh_data_of, require_known_frames, stated_frames
+from ._options import checked, takes
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._option_types import CheckNestedOptions, CheckOptions
 
 PROFILES = ("bem", "print", "view")
 
@@ -124,9 +130,9 @@ class Comparison(_Report):
                 f"max {self.max:.4g} mm>")
 
 
-def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = None,
-          max_pairs: int = 1000, input_coordinates: Optional[str] = None,
-          threads: int = 0) -> Check:
+@takes("check")
+def check(mesh: Any, profile: str = "print", *, input_coordinates: Optional[str] = None,
+          threads: int = 0, **options: Unpack[CheckOptions]) -> Check:
     """Check whether a surface is sound: closed, manifold, oriented, without crossing triangles, of
     a plausible size.
 
@@ -136,10 +142,7 @@ def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = Non
         mm, in any frame; may be broken in any way.
     profile : {"bem", "print", "view"}
         Use of the surface, which determines the required checks.
-    min_angle : float, optional
-        Required smallest angle, degrees, 0 to 60.
-    max_pairs : int
-        Pairs of crossing triangles to list; all are counted.
+    **options
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, optional
         The frame of a file's points, overriding the file's own.
     threads : int
@@ -160,26 +163,25 @@ def check(mesh: Any, profile: str = "print", *, min_angle: Optional[float] = Non
     ['closed']
     """
     text = _adaptiso.check(mesh_data_of(mesh, True, *stated_frames(input_coordinates, [mesh])),
-                           word("profile", profile, PROFILES), _min_angle(min_angle),
-                           count("max_pairs", max_pairs), checked_threads(threads))
+                           word("profile", profile, PROFILES), checked("check", options),
+                           checked_threads(threads))
     return Check(json.loads(text))
 
 
+@takes("check_nested")
 def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str = "bem", *,
-                 min_gap: Optional[float] = None, min_angle: Optional[float] = None,
-                 max_pairs: int = 1000, names: Optional[Sequence[str]] = None,
+                 names: Optional[Sequence[str]] = None,
                  input_coordinates: Union[str, Sequence[Optional[str]], None] = None,
-                 threads: int = 0) -> Check:
+                 threads: int = 0, **options: Unpack[CheckNestedOptions]) -> Check:
     """Check surfaces that lie in each other, and each of them.
 
     Parameters
     ----------
     meshes : sequence of what `check` takes, or a dict of them by name
         From inside out; all in one frame. ``HeadModel.surfaces`` is such a dict.
-    profile, min_angle, max_pairs, threads
+    profile, threads
         As for `check`.
-    min_gap : float, optional
-        Required distance of neighbours, mm; default 0.5, required of "bem" only.
+    **options
     names : sequence of str, optional
         Their names in findings; default the dict's keys, the files' names, or "surface 1" and so on.
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, or a sequence of one for each, optional
@@ -216,9 +218,8 @@ def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str =
             for mesh, stated in zip(surfaces, stated_frames(input_coordinates, surfaces))]
     _require_one_frame(data, surfaces, told)
     text = _adaptiso.check_nested(
-        data, told, word("profile", profile, PROFILES),
-        optional_number("min_gap", min_gap, "a number from 0, in mm", lambda value: value >= 0),
-        _min_angle(min_angle), count("max_pairs", max_pairs), checked_threads(threads))
+        data, told, word("profile", profile, PROFILES), checked("check_nested", options),
+        checked_threads(threads))
     return Check(json.loads(text))
 
 
@@ -267,11 +268,6 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True,
                              flag("symmetric", symmetric), checked_threads(threads),
                              checked_progress(progress))
     return Comparison(json.loads(text))
-
-
-def _min_angle(value: Any) -> Optional[float]:
-    return optional_number("min_angle", value, "a number from 0 to 60, in degrees",
-                           lambda angle: 0 <= angle <= 60)
 
 
 def _names(surfaces: Sequence[Any], names: Optional[Sequence[str]]) -> List[str]:

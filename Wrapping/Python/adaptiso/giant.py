@@ -19,11 +19,17 @@ import re
 import shutil
 import signal
 import subprocess
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional
 
 from ._adaptiso import Error, InternalError
-from ._arguments import (count, flag, listed, number, optional_number, path as checked_path, shown,
+from ._arguments import (count, listed, number, optional_number, path as checked_path, shown,
                          threads as checked_threads, word)
+from ._options import program_options, takes
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._option_types import GiantOptions
 
 __all__ = ["Plan", "join", "plan", "read_plan", "run", "seam", "tile"]
 
@@ -47,11 +53,10 @@ class Plan(NamedTuple):
     seams: List[str]
 
 
+@takes("giant")
 def plan(work: Any, image: Any, level: float, *, method: str = "adaptive",
-         max_error: Optional[float] = None, side: int = 384, series: Optional[str] = None,
-         volume_index: Optional[int] = None, zarr_level: Optional[int] = None,
-         channel: Optional[int] = None, time: Optional[int] = None,
-         all_chunks: bool = False) -> Plan:
+         max_error: Optional[float] = None, side: int = 384,
+         **options: Unpack[GiantOptions]) -> Plan:
     """Cut a volume into tiles, and find those that may hold surface.
 
     Parameters
@@ -69,10 +74,7 @@ def plan(work: Any, image: Any, level: float, *, method: str = "adaptive",
         between planes of voxels.
     side : int
         Of a tile, in cells; a multiple of 32.
-    zarr_level : int, optional
-        Which resolution of an OME-Zarr or N5 to take: ``level`` of `adaptiso.read`.
-    series, volume_index, channel, time, all_chunks
-        As for `adaptiso.read`.
+    **options
 
     Returns
     -------
@@ -84,8 +86,7 @@ def plan(work: Any, image: Any, level: float, *, method: str = "adaptive",
         An image or an option that can't be used; no program adaptiso-giant.
     """
     folder = _folder(work)
-    _run(["plan", folder, *_planned(image, level, method, max_error, side, series, volume_index,
-                                    zarr_level, channel, time, all_chunks)])
+    _run(["plan", folder, *_planned("plan", image, level, method, max_error, side, options)])
     return read_plan(folder)
 
 
@@ -189,12 +190,11 @@ def join(work: Any, output: Any = None, *, preview: Any = None, frame: str = "ra
                  *_threads(threads)])
 
 
+@takes("giant")
 def run(work: Any, image: Any, level: float, output: Any = None, *, workers: int = 1,
         preview: Any = None, frame: str = "ras", threads: int = 0, method: str = "adaptive",
-        max_error: Optional[float] = None, side: int = 384, series: Optional[str] = None,
-        volume_index: Optional[int] = None, zarr_level: Optional[int] = None,
-        channel: Optional[int] = None, time: Optional[int] = None,
-        all_chunks: bool = False) -> Dict[str, Any]:
+        max_error: Optional[float] = None, side: int = 384,
+        **options: Unpack[GiantOptions]) -> Dict[str, Any]:
     """All steps on this machine. Called again after it was stopped, it goes on where it was.
 
     Parameters
@@ -203,8 +203,7 @@ def run(work: Any, image: Any, level: float, output: Any = None, *, workers: int
         Tiles at a time, each by a process of its own.
     work, image, level, method, max_error, side
         As for `plan`.
-    series, volume_index, zarr_level, channel, time, all_chunks
-        As for `plan`.
+    **options
     output, preview, frame, threads
         As for `join`.
 
@@ -218,34 +217,23 @@ def run(work: Any, image: Any, level: float, output: Any = None, *, workers: int
     Error
         As of the steps.
     """
-    planned = _planned(image, level, method, max_error, side, series, volume_index, zarr_level,
-                       channel, time, all_chunks)
+    planned = _planned("run", image, level, method, max_error, side, options)
     return _run(["run", _folder(work), *planned, *_result(output, preview, frame),
                  f"--workers={count('workers', workers, 1, 1024)}", *_threads(threads)])
 
 
-def _planned(image: Any, level: Any, method: Any, max_error: Any, side: Any, series: Any,
-             volume_index: Any, zarr_level: Any, channel: Any, time: Any,
-             all_chunks: Any) -> List[str]:
+def _planned(function: str, image: Any, level: Any, method: Any, max_error: Any, side: Any,
+             options: Mapping[str, Any]) -> List[str]:
     """Options of the program. \\raises Error"""
-    options = [f"--input={checked_path('image', image)}",
+    planned = [f"--input={checked_path('image', image)}",
                f"--iso={number('level', level)!r}",
                f"--method={word('method', method, METHODS)}",
                f"--tile={count('side', side, 32, 4096)}"]
     largest = optional_number("max_error", max_error, "a number above 0, in mm",
                               lambda value: value > 0)
     if largest is not None:
-        options.append(f"--max-error={largest!r}")
-    if series is not None:
-        if not isinstance(series, (str, int)):
-            raise Error(f"series {shown(series)}: must be a number or a SeriesInstanceUID")
-        options.append(f"--series={series}")
-    for name, option, value in (("volume_index", "volume-index", volume_index),
-                                ("zarr_level", "level", zarr_level),
-                                ("channel", "channel", channel), ("time", "time", time)):
-        if value is not None:
-            options.append(f"--{option}={count(name, value)}")
-    return options + (["--refuse-missing-chunks"] if flag("all_chunks", all_chunks) else [])
+        planned.append(f"--max-error={largest!r}")
+    return planned + program_options("giant", options, function)
 
 
 def _result(output: Any, preview: Any, frame: Any) -> List[str]:

@@ -11,6 +11,7 @@
 #include "Calls.h"
 #include "Common/SurfaceSize.h"
 #include "MeshData.h"
+#include "OptionRows.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -20,12 +21,17 @@
 namespace adaptiso::python {
 namespace {
 
-std::string checkMesh(const MeshData& data, const std::string& profile,
-                      std::optional<double> minAngleDeg, std::int64_t maxPairs, int threads) {
+CheckRules rulesOf(const std::string& profile, const py::dict& options) {
     CheckRules rules;
     rules.profile = profileOf(profile);
-    rules.minAngleDeg = minAngleDeg;
-    rules.maxPairs = maxPairs;
+    take(ruleOptions(), rules, options);
+    rules.measuresWalls = rules.minWallMm.has_value();
+    return rules;
+}
+
+std::string checkMesh(const MeshData& data, const std::string& profile, const py::dict& options,
+                      int threads) {
+    const CheckRules rules = rulesOf(profile, options);
     std::string json;
     runUnlocked(threads, [&] { json = dumped(surfaceVerdict(data.mesh(), rules)); });
     return json;
@@ -33,18 +39,13 @@ std::string checkMesh(const MeshData& data, const std::string& profile,
 
 std::string checkNested(const std::vector<std::shared_ptr<MeshData>>& meshes,
                         const std::vector<std::string>& names, const std::string& profile,
-                        std::optional<double> minGapMm, std::optional<double> minAngleDeg,
-                        std::int64_t maxPairs, int threads) {
-    CheckRules rules;
+                        const py::dict& options, int threads) {
+    CheckRules rules = rulesOf(profile, options);
     rules.isNested = true;
-    rules.profile = profileOf(profile);
-    rules.minGapMm = minGapMm;
-    rules.minAngleDeg = minAngleDeg;
-    rules.maxPairs = maxPairs;
-    std::vector<const TriangleMesh*> asked;
-    for (const auto& mesh : meshes) asked.push_back(&mesh->mesh());
+    std::vector<const TriangleMesh*> surfaces;
+    for (const auto& mesh : meshes) surfaces.push_back(&mesh->mesh());
     std::string text;
-    runUnlocked(threads, [&] { text = dumped(nestedJson(asked, names, {}, rules)); });
+    runUnlocked(threads, [&] { text = dumped(nestedJson(surfaces, names, {}, rules)); });
     return text;
 }
 
@@ -76,11 +77,10 @@ std::string compareMeshes(const MeshData& a, const MeshData& b, std::int64_t sam
 }  // namespace
 
 void declareChecks(py::module_& module) {
-    module.def("check", &checkMesh, py::arg("mesh"), py::arg("profile"), py::arg("min_angle"),
-               py::arg("max_pairs"), py::arg("threads"));
-    module.def("check_nested", &checkNested, py::arg("meshes"), py::arg("names"),
-               py::arg("profile"), py::arg("min_gap"), py::arg("min_angle"), py::arg("max_pairs"),
+    module.def("check", &checkMesh, py::arg("mesh"), py::arg("profile"), py::arg("options"),
                py::arg("threads"));
+    module.def("check_nested", &checkNested, py::arg("meshes"), py::arg("names"),
+               py::arg("profile"), py::arg("options"), py::arg("threads"));
     module.def("compare", &compareMeshes, py::arg("a"), py::arg("b"), py::arg("samples"),
                py::arg("symmetric"), py::arg("threads"), py::arg("progress"));
 }

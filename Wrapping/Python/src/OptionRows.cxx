@@ -1,5 +1,6 @@
 #include "OptionRows.h"
 
+#include <algorithm>
 #include <initializer_list>
 
 #include "Words.h"
@@ -9,6 +10,7 @@
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/Json/OptionsJson.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso::python {
 namespace {
@@ -19,20 +21,33 @@ Json joined(std::initializer_list<Json> lists) {
     return all;
 }
 
+/// Those of the rows that a function takes.
+Json those(const Json& rows, std::initializer_list<std::string_view> names) {
+    Json some = Json::array();
+    for (const Json& row : rows) {
+        if (std::ranges::find(names, row["name"].get<std::string_view>()) != names.end()) {
+            some.push_back(row);
+        }
+    }
+    return some;
+}
+
 /// Rows of the functions that take options, as JSON.
 std::string optionRows() {
-    Json border = Json::array();
-    for (const Json& row : describe(indexOptions())) {
-        if (row["name"] == "border") border.push_back(row);
-    }
+    const Json rules = describe(ruleOptions());
     return dumped(
-        {{"surface", joined({describe(aimOptions(AimedSurface::OfScan)), describe(methodOptions()),
-                             border, describe(pieceOptions())})},
+        {{"surface",
+          joined({describe(aimOptions(AimedSurface::OfScan)), describe(methodOptions()),
+                  those(describe(indexOptions()), {"border"}), describe(pieceOptions())})},
+         {"check", those(rules, {"min-angle", "min-wall", "max-pairs"})},
+         {"check_nested", those(rules, {"min-gap", "min-angle", "min-wall", "max-pairs"})},
          {"simplify",
           joined({describe(aimOptions(AimedSurface::Mesh)), describe(borderOptions())})},
          {"labels", describe(aimOptions(AimedSurface::Walls))},
          {"bem", describe(boundaryOptions())},
-         {"read", describe(readOptions())}});
+         {"read", describe(readOptions())},
+         {"giant", those(describe(readOptions()), {"series", "volume-index", "level", "channel",
+                                                   "time", "refuse-missing-chunks"})}});
 }
 
 }  // namespace

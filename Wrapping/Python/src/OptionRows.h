@@ -11,7 +11,7 @@ namespace adaptiso::python {
 
 namespace py = pybind11;
 
-/// "min-angle" -> "min_angle"
+/// "max-error" -> "max_error"
 inline std::string argumentName(const OptionFacts& facts) {
     std::string name(facts.name);
     std::ranges::replace(name, '-', '_');

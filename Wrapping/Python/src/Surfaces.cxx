@@ -56,8 +56,8 @@ struct SurfaceRequest {
 void requireUsable(const SurfaceRequest& request) {
     const ExtractionOptions& extraction = request.extraction;
     if (extraction.method != Method::Adaptive && !(extraction.adaptive == AdaptiveOptions{})) {
-        throw InvalidInput(
-            "max_error, triangles, reduction and min_angle are for the method 'adaptive'");
+        throw InvalidInput(namesOf(aimOptions(AimedSurface::OfScan)) +
+                           ": are for the method 'adaptive'");
     }
     const ComponentSelection& pieces = request.selection;
     if (request.border == Border::Open && (pieces.fillCavities || pieces.minVolumeMm3 > 0)) {

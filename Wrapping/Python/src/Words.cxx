@@ -30,8 +30,8 @@ std::optional<CoordinateFrame> frameOf(const std::optional<std::string>& word) {
 Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules) {
     TriangleMesh asked = mesh;  // what measures may change is not the user's
     freeMemory(asked.normals);
-    const SurfaceFacts facts =
-        measureSurface(asked, sizeLimitsOf(rules.profileInUse()), rules.maxPairs);
+    SurfaceFacts facts = measureSurface(asked, sizeLimitsOf(rules.profileInUse()), rules.maxPairs);
+    if (rules.measuresWalls) measureWallsOf(asked, rules.wallLimitMm(), facts);
     Json json = verdictJson(judgeSurface(facts, rules));
     json.update(factsJson(facts));
     return json;

@@ -31,15 +31,19 @@ inline constexpr std::int64_t kAnyCount = std::int64_t{1} << 53;
 /// "a whole number from 0 to 3", "a whole number, 0 or more"
 std::string countRule(std::int64_t least, std::int64_t most);
 
+/// The largest count that a rule allows.
+std::int64_t mostOf(const NumberRule& rule);
+
 /// Facts about one option, from which the command line, --help, reports and Python's arguments are
 /// made.
 struct OptionFacts {
-    std::string_view name;         ///< "min-angle": --min-angle, Python's min_angle
-    std::string_view key{};        ///< in reports: "minAngleDeg"
-    std::string_view valueName{};  ///< in --help: "DEG"
+    std::string_view name;         ///< "max-error": --max-error, Python's max_error
+    std::string_view key{};        ///< in reports: "maxErrorMm"
+    std::string_view label{};      ///< on pages: "Largest error"; empty: not shown there
+    std::string_view valueName{};  ///< in --help: "MM"
     std::string_view help{};       ///< one sentence or two, without the value's name and default
     std::string_view standard{};   ///< the default in words, where --help states it
-    NumberRule rule{};             ///< of a number
+    NumberRule rule{};             ///< of a number or a count; a count is 0 or more in any case
     /// Words of a choice, in the order of --help. For an enumeration: in the order of its values.
     std::span<const std::string_view> words{};
     /// Check of a text, and its rule in words. Empty: any text.
@@ -55,6 +59,9 @@ std::string helpText(const OptionFacts& facts, OptionKind kind);
 
 /// Empty (monostate): not given. A choice is its word; it is read as a number where it is one.
 using OptionValue = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
+
+/// A value for people: "0.15 mm", "20°", "yes".
+std::string valueText(const OptionValue& value, const NumberRule& rule);
 
 /// A row: an option and the member of `Owner` that holds its value.
 template <class Owner>
@@ -155,5 +162,15 @@ constexpr auto option(const OptionFacts& facts) {
 /// The rows of an options struct.
 template <class Owner>
 using Options = std::vector<Option<Owner>>;
+
+/// "--largest, --min-volume, --fill-cavities"
+template <class Owner>
+std::string namesOf(const Options<Owner>& rows) {
+    std::string names;
+    for (const Option<Owner>& row : rows) {
+        names += (names.empty() ? "--" : ", --") + std::string(row.facts.name);
+    }
+    return names;
+}
 
 }  // namespace adaptiso

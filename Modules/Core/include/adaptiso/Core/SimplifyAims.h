@@ -34,7 +34,7 @@ enum class AimedSurface {
     Walls    ///< between the regions of a label map: a bound of 0 keeps them whole
 };
 
-/// --max-error, --triangles, --reduction and --min-angle.
+/// A row for each.
 const Options<SimplifyAims>& aimOptions(AimedSurface surface);
 
 }  // namespace adaptiso

@@ -32,7 +32,8 @@ struct LabelComplex {
 
 /// Aims of extractLabels(): distance of each wall to itself at full resolution, 0 for these walls
 /// themselves, kDefaultMaxErrorVoxels with neither bound nor count. Where walls at full resolution
-/// have an angle below minAngleDeg, none that is smaller still is made. \pre maxErrorMm >= 0
+/// have an angle below the smallest wanted, none that is smaller still is made. \pre maxErrorMm >=
+/// 0
 struct LabelOptions : SimplifyAims {
     /// Fraction of the least distance between planes of samples.
     static constexpr double kDefaultMaxErrorVoxels = 0.15;

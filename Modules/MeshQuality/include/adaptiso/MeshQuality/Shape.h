@@ -18,7 +18,7 @@ struct Spread {
 
 struct ShapeReport {
     std::int64_t triangles = 0;  ///< measured
-    Spread minAngleDeg;          ///< smallest angle of each triangle: 60 is best
+    Spread angleDeg;             ///< smallest angle of each triangle: 60 is best
     Spread aspectRatio;          ///< 1 is best; infinite without area
     Spread edgeMm;               ///< every triangle's three: an edge in two triangles counts twice
 };

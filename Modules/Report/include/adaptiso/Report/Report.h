@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "adaptiso/Core/Geometry.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
 
@@ -115,6 +117,19 @@ struct Report {
     /// neither at all.
     bool leavesOutFaces = false;
 };
+
+/// The options of rows that have a label, without those that are off, 0 or not given.
+template <class Owner>
+void addOptions(const Options<Owner>& rows, const std::type_identity_t<Owner>& owner,
+                std::vector<ReportFact>& facts) {
+    for (const Option<Owner>& row : rows) {
+        const OptionValue value = row.valueOf(owner);
+        const bool isOff =
+            value == OptionValue{} || value == OptionValue{false} || value == OptionValue{0.0};
+        if (row.facts.label.empty() || isOff) continue;
+        facts.emplace_back(row.facts.label, valueText(value, row.facts.rule));
+    }
+}
 
 /// Now, in UTC: "2026-11-21 09:20 UTC"; the time of SOURCE_DATE_EPOCH, where it is set.
 std::string reportDate();

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
@@ -71,14 +72,14 @@ struct CheckRules {
     bool isNested = false;              ///< they lie in each other, the innermost first
     std::optional<Profile> profile;     ///< default: Bem when nested, else Print
     std::optional<double> minGapMm;     ///< default: kDefaultMinGapMm, required of Bem only
-    std::optional<double> minAngleDeg;  ///< default: kDefaultMinAngleDeg, required of Bem only
+    std::optional<double> minAngleDeg;  ///< default: kLeastAngleDeg, required of Bem only
     std::optional<double> maxOffMm;     ///< default: half a voxel on the mean
     bool measuresWalls = false;         ///< costs more than all other checks of a surface
     std::optional<double> minWallMm;    ///< default: kDefaultMinWallMm, and not required
     std::int64_t maxPairs = 1000;       ///< of triangles that cross, to list
 
-    static constexpr double kDefaultMinGapMm = 0.5;   // thinner than any bone of the skull
-    static constexpr double kDefaultMinAngleDeg = 1;  // slivers that only bad remeshing leaves
+    static constexpr double kDefaultMinGapMm = 0.5;  // thinner than any bone of the skull
+    static constexpr double kLeastAngleDeg = 1;      // slivers that only bad remeshing leaves
 
     /// Two lines of the usual nozzle of 0.4 mm, the least that guides for filament printers name.
     static constexpr double kDefaultMinWallMm = 0.8;
@@ -88,7 +89,12 @@ struct CheckRules {
     Profile profileInUse() const {
         return profile.value_or(isNested ? Profile::Bem : Profile::Print);
     }
+    /// The same with every default filled in, for reports: the checks ask what was given.
+    CheckRules inUse() const;
 };
+
+/// --profile, --min-gap, --min-angle, --min-wall, --max-off and --max-pairs.
+const Options<CheckRules>& ruleOptions();
 
 enum class Outcome {
     Passed,
