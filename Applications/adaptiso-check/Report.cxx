@@ -82,6 +82,7 @@ Json optionsJson(const CheckOptions& options) {
               {"nested", options.isNested},
               {"iso", orNull(options.isovalue)}};
     json.update(valuesJson(ruleOptions(), options.inUse()));
+    json.update(valuesJson(pairOptions(), options));
     json["threads"] = orNull(options.common.threads);
     json["strict"] = options.common.isStrict;
     return json;

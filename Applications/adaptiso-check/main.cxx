@@ -41,8 +41,7 @@ void declareInput(CLI::App& app, CheckOptions& options) {
 
 void declareRequirements(CLI::App& app, CheckOptions& options) {
     const OptionGroup required(app, kRequired);
-    required.rows(ruleOptions(), options,
-                  {"profile", "min-gap", "min-angle", "min-wall", "max-off"});
+    required.rows(ruleOptions(), options);
 }
 
 void declareSelfTest(CLI::App& app, CheckOptions& options) {
@@ -65,7 +64,7 @@ void checkSelfTestAlone(const CLI::App& app) {
 
 void declareOutput(CLI::App& app, CheckOptions& options) {
     const OptionGroup output(app, kOutput);
-    output.rows(ruleOptions(), options, {"max-pairs"});
+    output.rows(pairOptions(), options);
     declareReportOptions(app, options.report, kOutput);
 }
 
@@ -90,15 +89,26 @@ void checkCombinations(const CheckOptions& options) {
     }
 }
 
-constexpr const char* kFooter = R"(Required by the profiles:
-  bem, print, view  coordinates finite; indices in range; orientation consistent
-                    and outward; no duplicate triangle; where asked for: on the
-                    isosurface, strictly nested and nowhere crossing
-  bem, print        closed; edges and vertices manifold; no degenerate triangle;
-                    no self-intersection; a size plausible in mm
-  bem               one component; genus 0; no unused or duplicate vertex; no
-                    angle below 1 degree; MNE's solid angle; a gap of 0.5 mm
-Other findings are reported as "noted".
+/// "bem, print   closed; edges manifold; ...", for --help.
+std::string requiredText(std::string_view profiles, bool print, bool view) {
+    constexpr std::size_t kIndent = 20, kColumns = 80;
+    std::string text, line = "  " + std::string(profiles);
+    line.resize(kIndent, ' ');
+    bool isFirst = true;
+    for (const CheckRule& rule : checkRules()) {
+        if (!rule.bem || rule.print != print || rule.view != view) continue;
+        if (!isFirst) line += "; ";
+        if (line.size() + rule.name.size() >= kColumns) {
+            text += line.substr(0, line.size() - 1) + "\n";
+            line.assign(kIndent, ' ');
+        }
+        line += rule.name;
+        isFirst = false;
+    }
+    return text + line + "\n";
+}
+
+constexpr const char* kFooter = R"(Other findings are reported as "noted".
 
 Two triangles intersect when they have a point in common that is not a corner
 or edge which both share (touching is enough). Decided exactly.
@@ -120,7 +130,10 @@ checked; the exit code is then 3.)";
 
 Program checkProgram() {
     return {"adaptiso-check",
-            "Checks whether triangle surfaces are sound, and shows where they are not.", kFooter};
+            "Checks whether triangle surfaces are sound, and shows where they are not.",
+            "Required by the profiles:\n" + requiredText("bem, print, view", true, true) +
+                requiredText("bem, print", true, false) + requiredText("bem", false, false) +
+                kFooter};
 }
 
 void declareCheckOptions(CLI::App& app, CheckOptions& options) {

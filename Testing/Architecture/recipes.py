@@ -1,8 +1,8 @@
 """The recipes of CONTRIBUTING.md, followed on a copy of a module's sources: a mesh format and a label table are three
-files each. What changed is compiled as the build folder compiles its like, and linked before the module's library
-into its unit tests.
+files each, a check and its option two. What changed is compiled as the build folder compiles its like, and linked
+before the module's library into its unit tests.
 
-recipes.py SOURCE BUILD NINJA mesh|labels"""
+recipes.py SOURCE BUILD NINJA mesh|labels|check"""
 import json
 import os
 import shlex
@@ -45,15 +45,18 @@ class Copy:
         words[words.index("-o") + 1] = output
         words[words.index("-c") + 1] = str(file)
         words = [word for word in words if "ccache" not in word]
-        subprocess.run([*words, "-I", str(self.folder / self.module / "src")], check=True, cwd=self.build)
+        words[1:1] = [f"-I{self.folder / self.module / name}" for name in ("include", "src")]
+        subprocess.run(words, check=True, cwd=self.build)
         return output
 
     def run_tests(self, objects: list, only: str) -> None:
+        """\\param objects  take the place of the tests' own of the same names"""
         target, library = f"test{self.module}", f"libadaptiso{self.module}.a"
         # " : && c++ ... -o test ... && : "
         commands = subprocess.run([self.ninja, "-t", "commands", target], cwd=self.build, text=True, check=True,
                                   capture_output=True).stdout.splitlines()
-        link = shlex.split(commands[-1].split("&&")[1])
+        names = {Path(name).stem for name in objects}
+        link = [word for word in shlex.split(commands[-1].split("&&")[1]) if Path(word).name[:-len(".cxx.o")] not in names]
         at = next(n for n, word in enumerate(link) if word.endswith(library))
         link[at:at] = objects
         program = str(self.folder / target)
@@ -98,12 +101,30 @@ def labels(copy: Copy) -> list:
     return copy.touched()
 
 
+def check(copy: Copy) -> list:
+    header = "include/adaptiso/SurfaceChecks/Checks.h"
+    copy.insert(header, "    std::optional<double> maxAreaMm2;\n", "    std::optional<double> maxOffMm;")
+    copy.insert("src/Checks.cxx", 'constexpr CheckRule kArea{"area", "area", "the area is as asked for", false, false, false};\n',
+                "constexpr std::array kCheckRules")
+    copy.insert("src/Checks.cxx", "kArea, ", "kGenus,")
+    copy.insert("src/Checks.cxx", "addUnless(kArea, facts_.areaMm2 > rules_.maxAreaMm2.value_or(facts_.areaMm2), \"too large\");\n",
+                "        const auto genus =")
+    copy.insert("src/Checks.cxx", """option<&CheckRules::maxAreaMm2>({.name = "max-area", .key = "maxAreaMm2", .valueName = "MM2",
+        .help = "Largest area that passes", .rule = {.least = 0, .unit = "mm2"}}),\n""",
+                "        option<&CheckRules::maxOffMm>(")
+    like = copy.original / "src" / "Checks.cxx"
+    test = next(path for path in copy.commands if path.name == "ChecksTest.cxx")
+    copy.run_tests([copy.compile(RECIPES / "AreaTest.cxx", test), copy.compile(test, test),
+                    copy.compile(copy.folder / copy.module / "src" / "Checks.cxx", like)], "-*OfTheirPage")
+    return copy.touched()
+
+
 def main() -> int:
     source, build, ninja, which = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3], sys.argv[4]
     if not ninja.endswith("ninja") or not (build / "compile_commands.json").exists():
         print("needs a build folder of ninja with compile_commands.json")
         return SKIPPED
-    module, recipe = {"mesh": ("MeshIO", mesh), "labels": ("LabelNames", labels)}[which]
+    module, recipe = {"mesh": ("MeshIO", mesh), "labels": ("LabelNames", labels), "check": ("SurfaceChecks", check)}[which]
     with tempfile.TemporaryDirectory() as folder:
         touched = recipe(Copy(source, build, ninja, module, Path(folder)))
     print(f"{len(touched)} files of the module touched: {', '.join(touched)}")

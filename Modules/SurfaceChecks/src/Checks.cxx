@@ -80,51 +80,154 @@ std::string wallText(const WallReport& walls) {
 
 namespace {
 
-/// A question, and the profiles that need it answered with yes.
-struct Rule {
-    std::string_view key;
-    std::string_view name;
-    bool bem, print, view;
-
-    bool isRequiredBy(Profile profile) const {
-        switch (profile) {
-            case Profile::Bem:
-                return bem;
-            case Profile::Print:
-                return print;
-            case Profile::View:
-                return view;
-        }
-        throw InternalError("isRequiredBy: unknown profile");
-    }
-};
-
 constexpr std::array<std::string_view, 3> kProfiles{"bem", "print", "view"};
 
-// adaptiso-check's README.md and --help say the same in words.
-constexpr Rule kFinite{"finiteCoordinates", "finite coordinates", true, true, true};
-constexpr Rule kIndices{"indicesInRange", "indices in range", true, true, true};
-constexpr Rule kClosed{"closed", "closed", true, true, false};
-constexpr Rule kEdges{"manifoldEdges", "edges manifold", true, true, false};
-constexpr Rule kVertices{"manifoldVertices", "vertices manifold", true, true, false};
-constexpr Rule kOriented{"consistentOrientation", "orientation consistent", true, true, true};
-constexpr Rule kOutward{"outward", "facing outward", true, true, true};
-constexpr Rule kOneComponent{"oneComponent", "one component", true, false, false};
-constexpr Rule kGenus{"genusZero", "genus 0", true, false, false};
-constexpr Rule kDegenerate{"noDegenerateTriangles", "no degenerate triangle", true, true, false};
-constexpr Rule kDuplicateTriangles{"noDuplicateTriangles", "no duplicate triangle", true, true,
-                                   true};
-constexpr Rule kDuplicateVertices{"noDuplicateVertices", "no duplicate vertex", true, false, false};
-constexpr Rule kUnused{"noUnusedVertices", "no unused vertex", true, false, false};
-constexpr Rule kCrossings{"noSelfIntersections", "no self-intersection", true, true, false};
-constexpr Rule kLeastAngle{"minAngle", "smallest angle", true, false, false};
-constexpr Rule kSize{"plausibleSize", "size plausible in mm", true, true, false};
-constexpr Rule kMinWall{"minWall", "walls", false, false, false};
-constexpr Rule kSolidAngle{"solidAngle", "MNE's solid angle", true, false, false};
-constexpr Rule kDeviation{"onIsosurface", "on the isosurface", true, true, true};
-constexpr Rule kNoCrossing{"noCrossing", "no crossing", true, true, true};
-constexpr Rule kNested{"strictlyNested", "strictly nested", true, true, true};
-constexpr Rule kMinGap{"minGap", "gap", true, false, false};
+constexpr CheckRule kFinite{"finiteCoordinates",
+                            "finite coordinates",
+                            "no coordinate is NaN or infinite",
+                            true,
+                            true,
+                            true};
+constexpr CheckRule kIndices{"indicesInRange",
+                             "indices in range",
+                             "every triangle names vertices that are there",
+                             true,
+                             true,
+                             true};
+constexpr CheckRule kClosed{
+    "closed", "closed", "no edge lies in one triangle only; a triangle soup is named as such",
+    true,     true,     false};
+constexpr CheckRule kEdges{"manifoldEdges",
+                           "edges manifold",
+                           "no edge lies in more than two triangles",
+                           true,
+                           true,
+                           false};
+constexpr CheckRule kVertices{"manifoldVertices",
+                              "vertices manifold",
+                              "the triangles round every vertex are one fan",
+                              true,
+                              true,
+                              false};
+constexpr CheckRule kOriented{"consistentOrientation",
+                              "orientation consistent",
+                              "triangles at an edge run along it in opposite directions",
+                              true,
+                              true,
+                              true};
+constexpr CheckRule kOutward{"outward",
+                             "facing outward",
+                             "triangles are counter-clockwise seen from outside; those of a "
+                             "cavity's wall, seen from the cavity",
+                             true,
+                             true,
+                             true};
+constexpr CheckRule kOneComponent{
+    "oneComponent", "one component", "all triangles hang together by shared vertices",
+    true,           false,           false};
+constexpr CheckRule kGenus{"genusZero", "genus 0", "there is no handle", true, false, false};
+constexpr CheckRule kDegenerate{
+    "noDegenerateTriangles",
+    "no degenerate triangle",
+    "no triangle names a vertex twice, or has an altitude of 1e-9 of its longest edge or less",
+    true,
+    true,
+    false};
+constexpr CheckRule kDuplicateTriangles{
+    "noDuplicateTriangles",
+    "no duplicate triangle",
+    "no two triangles have their corners at the same three places",
+    true,
+    true,
+    true};
+constexpr CheckRule kDuplicateVertices{"noDuplicateVertices",
+                                       "no duplicate vertex",
+                                       "no two vertices lie at the same place",
+                                       true,
+                                       false,
+                                       false};
+constexpr CheckRule kUnused{"noUnusedVertices",
+                            "no unused vertex",
+                            "every vertex is named by a triangle",
+                            true,
+                            false,
+                            false};
+constexpr CheckRule kCrossings{"noSelfIntersections",
+                               "no self-intersection",
+                               "no two triangles intersect, as said below",
+                               true,
+                               true,
+                               false};
+constexpr CheckRule kLeastAngle{
+    "minAngle", "smallest angle", "no angle is below `--min-angle` (1 degree)", true, false, false};
+constexpr CheckRule kSize{
+    "plausibleSize",
+    "size plausible in mm",
+    "bem: every side of the bounding box is 50 mm or more (as in MNE), none above 500 mm; else: "
+    "the longest side is 1 to 2000 mm; a shorter one, as of a micro-CT, is undecided",
+    true,
+    true,
+    false};
+constexpr CheckRule kMinWall{"minWall",
+                             "walls",
+                             "measured with `--min-wall` or `--profile print`: no wall is thinner "
+                             "than `--min-wall` (0.8 mm)",
+                             false,
+                             false,
+                             false};
+constexpr CheckRule kSolidAngle{"solidAngle",
+                                "MNE's solid angle",
+                                "MNE's criterion: from the mean of all vertices, the surface "
+                                "covers the whole sphere to within 1e-5",
+                                true,
+                                false,
+                                false};
+constexpr CheckRule kDeviation{"onIsosurface",
+                               "on the isosurface",
+                               "with `--iso`: the mean distance from the isosurface is half a "
+                               "voxel or less; with `--max-off`: the maximum is as much or less",
+                               true,
+                               true,
+                               true};
+constexpr CheckRule kNoCrossing{
+    "noCrossing",
+    "no crossing",
+    "with `--nested`: no triangle of one surface meets one of the next, touching included",
+    true,
+    true,
+    true};
+constexpr CheckRule kNested{"strictlyNested",
+                            "strictly nested",
+                            "with `--nested`: the surface lies inside the next",
+                            true,
+                            true,
+                            true};
+constexpr CheckRule kMinGap{
+    "minGap", "gap", "with `--nested`: the gap to the next is `--min-gap` (0.5 mm) or more",
+    true,     false, false};
+
+constexpr std::array kCheckRules{kFinite,
+                                 kIndices,
+                                 kClosed,
+                                 kEdges,
+                                 kVertices,
+                                 kOriented,
+                                 kOutward,
+                                 kOneComponent,
+                                 kGenus,
+                                 kDegenerate,
+                                 kDuplicateTriangles,
+                                 kDuplicateVertices,
+                                 kUnused,
+                                 kCrossings,
+                                 kLeastAngle,
+                                 kSize,
+                                 kMinWall,
+                                 kSolidAngle,
+                                 kDeviation,
+                                 kNoCrossing,
+                                 kNested,
+                                 kMinGap};
 
 std::string at(const Vec3& p) {
     return formatFixed(p.x, 2) + ", " + formatFixed(p.y, 2) + ", " + formatFixed(p.z, 2);
@@ -160,15 +263,15 @@ public:
     }
 
 private:
-    void add(const Rule& rule, Outcome outcome, std::string finding) {
+    void add(const CheckRule& rule, Outcome outcome, std::string finding) {
         checks_.push_back({rule.key, rule.name, rule.isRequiredBy(rules_.profileInUse()), outcome,
                            std::move(finding)});
     }
-    void add(const Rule& rule, bool holds, std::string finding) {
+    void add(const CheckRule& rule, bool holds, std::string finding) {
         add(rule, holds ? Outcome::Passed : Outcome::Failed, std::move(finding));
     }
     /// Passes without a finding, or fails with one.
-    void addUnless(const Rule& rule, bool isBad, const std::string& finding) {
+    void addUnless(const CheckRule& rule, bool isBad, const std::string& finding) {
         add(rule, !isBad, isBad ? finding : "");
     }
 
@@ -183,7 +286,7 @@ private:
         return hasPlace ? text + " at " + at(found->pointMm) : text;
     }
 
-    void addDefect(const Rule& rule, TopologyDefect defect, const std::string& one,
+    void addDefect(const CheckRule& rule, TopologyDefect defect, const std::string& one,
                    const std::string& many) {
         const std::int64_t count = facts_.topology.count(defect);
         addUnless(rule, count > 0, counted(count, one, many) + firstOf(defect));
@@ -390,7 +493,7 @@ private:
     std::vector<Check> checks_;
 };
 
-Check makeCheck(const Rule& rule, Outcome outcome, const std::string& finding,
+Check makeCheck(const CheckRule& rule, Outcome outcome, const std::string& finding,
                 const CheckRules& rules) {
     return {rule.key, rule.name, rule.isRequiredBy(rules.profileInUse()), outcome, finding};
 }
@@ -433,6 +536,14 @@ std::string relationText(const NestingReport& report, const std::string& inner,
 }
 
 }  // namespace
+
+bool CheckRule::isRequiredBy(Profile profile) const {
+    return std::array{bem, print, view}[static_cast<std::size_t>(profile)];
+}
+
+std::span<const CheckRule> checkRules() {
+    return kCheckRules;
+}
 
 std::string_view toString(Profile profile) {
     return kProfiles[static_cast<std::size_t>(profile)];
@@ -487,15 +598,19 @@ const Options<CheckRules>& ruleOptions() {
              .valueName = "MM",
              .help = "With --iso: largest distance from the isosurface that passes",
              .standard = "the mean within half a voxel",
-             .rule = {.least = 0, .unit = "mm"}}),
-        option<&CheckRules::maxPairs>(
-            {.name = "max-pairs",
-             .key = "maxPairs",
-             .valueName = "N",
-             .help = "List up to so many pairs of triangles that cross in the report; all are "
-                     "counted",
-             .standard = "1000",
-             .rule = {.most = 1e9}})};
+             .rule = {.least = 0, .unit = "mm"}})};
+    return rows;
+}
+
+const Options<CheckRules>& pairOptions() {
+    static const Options<CheckRules> rows{option<&CheckRules::maxPairs>(
+        {.name = "max-pairs",
+         .key = "maxPairs",
+         .valueName = "N",
+         .help = "List up to so many pairs of triangles that cross in the report; all are "
+                 "counted",
+         .standard = "1000",
+         .rule = {.most = 1e9}})};
     return rows;
 }
 
@@ -535,7 +650,7 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
                                 const std::string& outer, const AffineTransform& toFrame,
                                 const CheckRules& rules) {
     std::vector<Check> checks;
-    const auto add = [&](const Rule& rule, bool holds, const std::string& finding) {
+    const auto add = [&](const CheckRule& rule, bool holds, const std::string& finding) {
         checks.push_back(
             makeCheck(rule, holds ? Outcome::Passed : Outcome::Failed, finding, rules));
     };

@@ -21,11 +21,11 @@ Json joined(std::initializer_list<Json> lists) {
     return all;
 }
 
-/// Those of the rows that a function takes.
-Json those(const Json& rows, std::initializer_list<std::string_view> names) {
+/// The rows, but those that a function takes otherwise or not at all.
+Json without(std::initializer_list<std::string_view> names, const Json& rows) {
     Json some = Json::array();
     for (const Json& row : rows) {
-        if (std::ranges::find(names, row["name"].get<std::string_view>()) != names.end()) {
+        if (std::ranges::find(names, row["name"].get<std::string_view>()) == names.end()) {
             some.push_back(row);
         }
     }
@@ -34,20 +34,19 @@ Json those(const Json& rows, std::initializer_list<std::string_view> names) {
 
 /// Rows of the functions that take options, as JSON.
 std::string optionRows() {
-    const Json rules = describe(ruleOptions());
+    const Json rules = joined({describe(ruleOptions()), describe(pairOptions())});
+    const Json border = without({"block-size", "search"}, describe(indexOptions()));
     return dumped(
-        {{"surface",
-          joined({describe(aimOptions(AimedSurface::OfScan)), describe(methodOptions()),
-                  those(describe(indexOptions()), {"border"}), describe(pieceOptions())})},
-         {"check", those(rules, {"min-angle", "min-wall", "max-pairs"})},
-         {"check_nested", those(rules, {"min-gap", "min-angle", "min-wall", "max-pairs"})},
+        {{"surface", joined({describe(aimOptions(AimedSurface::OfScan)), describe(methodOptions()),
+                             border, describe(pieceOptions())})},
+         {"check", without({"profile", "min-gap", "max-off"}, rules)},
+         {"check_nested", without({"profile", "max-off"}, rules)},
          {"simplify",
           joined({describe(aimOptions(AimedSurface::Mesh)), describe(borderOptions())})},
          {"labels", describe(aimOptions(AimedSurface::Walls))},
          {"bem", describe(boundaryOptions())},
          {"read", describe(readOptions())},
-         {"giant", those(describe(readOptions()), {"series", "volume-index", "level", "channel",
-                                                   "time", "refuse-missing-chunks"})}});
+         {"giant", without({"resample-slices"}, describe(readOptions()))}});
 }
 
 }  // namespace

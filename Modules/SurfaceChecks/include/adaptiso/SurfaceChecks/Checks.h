@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -93,14 +94,29 @@ struct CheckRules {
     CheckRules inUse() const;
 };
 
-/// --profile, --min-gap, --min-angle, --min-wall, --max-off and --max-pairs.
+/// What is required: a row for each.
 const Options<CheckRules>& ruleOptions();
+/// --max-pairs
+const Options<CheckRules>& pairOptions();
 
 enum class Outcome {
     Passed,
     Failed,
     Undecided  ///< makes no sense of this surface: the genus of an open one
 };
+
+/// A row of the table of checks.
+struct CheckRule {
+    std::string_view key;      ///< of the report: "noSelfIntersections"
+    std::string_view name;     ///< for people: "no self-intersection"
+    std::string_view meaning;  ///< when it holds
+    bool bem, print, view;     ///< profiles that require it
+
+    bool isRequiredBy(Profile profile) const;
+};
+
+/// All checks, in the order of adaptiso-check's README.md.
+std::span<const CheckRule> checkRules();
 
 /// A check of a surface, or of two, and its outcome.
 struct Check {
@@ -117,7 +133,7 @@ struct Check {
 /// True if no required check failed.
 bool allHold(const std::vector<Check>& checks);
 
-/// The checks of one surface, in the order of the table in adaptiso-check's README.md.
+/// The checks of one surface.
 std::vector<Check> judgeSurface(const SurfaceFacts& facts, const CheckRules& rules);
 
 /// Checks that the surface lies on the isosurface.
