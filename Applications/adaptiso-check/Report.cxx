@@ -23,17 +23,6 @@
 namespace adaptiso::checker {
 namespace {
 
-Json deviationJson(const std::optional<DistanceStatistics>& deviation) {
-    if (!deviation) return nullptr;
-    return {{"samples", deviation->samples},
-            {"meanMm", number(deviation->meanMm)},
-            {"rmsMm", number(deviation->rmsMm)},
-            {"p95Mm", number(deviation->p95Mm)},
-            {"p99Mm", number(deviation->p99Mm)},
-            {"maxMm", number(deviation->maxMm)},
-            {"maxPointMm", vector(deviation->maxPointMm)}};
-}
-
 /// Why a file can't be read, without the folders of its name.
 std::string errorText(const SurfaceRun& surface) {
     const std::string path = surface.file.string();
@@ -51,7 +40,7 @@ Json surfaceJson(const SurfaceRun& surface) {
     json["coordinates"] = frameJson(surface.frame);
     json["pointsIn"] = frameJson(surface.points);
     json.update(factsJson(surface.facts));
-    json["isosurface"] = deviationJson(surface.deviation);
+    json["isosurface"] = surface.deviation ? deviationJson(*surface.deviation, {}) : Json();
     return json;
 }
 

@@ -39,20 +39,11 @@ Json optionsJson(const CompareOptions& options) {
             {"strict", options.common.isStrict}};
 }
 
-/// The lengths in another unit of `unitMm`.
-Json lengthsJson(const DistanceStatistics& distances, double unitMm) {
-    return {{"mean", number(distances.meanMm / unitMm)},
-            {"rms", number(distances.rmsMm / unitMm)},
-            {"p95", number(distances.p95Mm / unitMm)},
-            {"p99", number(distances.p99Mm / unitMm)},
-            {"max", number(distances.maxMm / unitMm)}};
-}
-
 Json distancesJson(const CompareRun& run, const DistanceStatistics& distances) {
     if (distances.samples == 0) return nullptr;
     Json json = distanceJson(distances, run.toFrame);
-    json["inVoxels"] = run.voxelMm ? lengthsJson(distances, *run.voxelMm) : Json(nullptr);
-    json["percentOfDiagonal"] = lengthsJson(distances, run.b.diagonalMm / 100);
+    json["inVoxels"] = run.voxelMm ? lengthsJson(distances, *run.voxelMm, "") : Json(nullptr);
+    json["percentOfDiagonal"] = lengthsJson(distances, run.b.diagonalMm / 100, "");
     return json;
 }
 
@@ -123,11 +114,9 @@ void printRow(std::ostream& out, std::string_view name, Length length, double un
 
 void printLengths(std::ostream& out, const std::string& unitName, double unit,
                   const DistanceReport& distances) {
-    printRow(out, "mean, " + unitName, &DistanceStatistics::meanMm, unit, distances);
-    printRow(out, "RMS, " + unitName, &DistanceStatistics::rmsMm, unit, distances);
-    printRow(out, "95 % within, " + unitName, &DistanceStatistics::p95Mm, unit, distances);
-    printRow(out, "99 % within, " + unitName, &DistanceStatistics::p99Mm, unit, distances);
-    printRow(out, "maximum, " + unitName, &DistanceStatistics::maxMm, unit, distances);
+    for (const LengthFigure& row : lengthFigures()) {
+        printRow(out, std::string(row.label) + ", " + unitName, row.lengthMm, unit, distances);
+    }
 }
 
 void printDistances(std::ostream& out, const CompareRun& run) {
@@ -207,15 +196,16 @@ void addOptions(const CompareRun& run, Report& report) {
 }
 
 ReportTable distanceTable(const CompareRun& run) {
-    ReportTable table{"Distances, mm",
-                      {"Direction", "Mean", "Root mean square", "95 %", "99 %", "Largest",
-                       "Angle between the surfaces, mean"},
-                      {}};
+    ReportTable table{"Distances, mm", {"direction"}, {}};
+    for (const LengthFigure& row : lengthFigures()) table.columns.emplace_back(row.label);
+    table.columns.emplace_back("mean angle between the surfaces");
     const auto add = [&](const std::string& name, const DistanceStatistics& statistics) {
-        table.rows.push_back({name, formatLength(statistics.meanMm, 4),
-                              formatLength(statistics.rmsMm, 4), formatLength(statistics.p95Mm, 4),
-                              formatLength(statistics.p99Mm, 4), formatLength(statistics.maxMm, 4),
-                              formatFixed(statistics.meanNormalDeviationDeg, 2) + "°"});
+        std::vector<std::string>& cells = table.rows.emplace_back();
+        cells.push_back(name);
+        for (const LengthFigure& row : lengthFigures()) {
+            cells.push_back(formatLength(statistics.*row.lengthMm, 4));
+        }
+        cells.push_back(formatFixed(statistics.meanNormalDeviationDeg, 2) + "°");
     };
     add("A to B", run.distances.aToB);
     if (run.options.isSymmetric) {

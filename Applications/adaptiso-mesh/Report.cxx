@@ -44,8 +44,12 @@ Json indexJson(const IndexSummary& index) {
     return {{"search", toString(index.search)}, {"memoryBytes", index.memoryBytes}};
 }
 
+MadeSurface madeSurface(const MeshRun& run, const SurfaceSummary& surface) {
+    return {surface, run.options.extraction.method, run.options.index.blockSize};
+}
+
 Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
-    Json json = surfaceJson(surface, run.options.extraction.method, run.options.index.blockSize);
+    Json json = figuresJson(surfaceFigures(), madeSurface(run, surface));
     json["output"] = {{"file", surface.file.filename().string()},
                       {"format", surface.format->name},
                       {"coordinates", frameWord(surface.frame)},
@@ -192,24 +196,13 @@ void addFindings(const SurfaceSummary& surface, Report& report) {
 }
 
 ReportTable surfaceTable(const MeshRun& run) {
-    ReportTable table{
-        "Surfaces",
-        {"File", "Isovalue", "Format, frame", "Triangles", "Marching cubes has", "Vertices",
-         "Pieces", "Genus", "Area, mm²", "Volume, mm³", "Error at most, mm"},
-        {}};
+    const auto& rows = surfaceFigures();
+    ReportTable table{"Surfaces", figureColumns({"File", "Format, frame"}, rows), {}};
     for (const SurfaceSummary& surface : run.surfaces) {
-        const auto genus = surface.topology.genus();
-        const auto bound = surface.errorBoundMm();
+        const std::string format =
+            std::string(surface.format->name) + ", " + std::string(toString(surface.frame));
         table.rows.push_back(
-            {nameOf(surface), formatNumber(surface.isovalue),
-             std::string(surface.format->name) + ", " + std::string(toString(surface.frame)),
-             formatCount(surface.topology.triangles),
-             formatCount(surface.statistics.marchingCubesTriangles),
-             formatCount(surface.topology.vertices),
-             formatCount(std::ssize(surface.topology.components)),
-             genus ? formatCount(*genus) : "–", formatMeasure(surface.areaMm2),
-             surface.volumeMm3 ? formatMeasure(*surface.volumeMm3) : "–",
-             bound ? formatBound(*bound) : "–"});
+            figureCells({nameOf(surface), format}, rows, madeSurface(run, surface)));
     }
     return table;
 }

@@ -224,16 +224,35 @@ Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
     return json;
 }
 
+std::span<const LengthFigure> lengthFigures() {
+    static constexpr LengthFigure kRows[] = {{"mean", "mean", &DistanceStatistics::meanMm},
+                                             {"rms", "RMS", &DistanceStatistics::rmsMm},
+                                             {"p95", "95 % within", &DistanceStatistics::p95Mm},
+                                             {"p99", "99 % within", &DistanceStatistics::p99Mm},
+                                             {"max", "maximum", &DistanceStatistics::maxMm}};
+    return kRows;
+}
+
+Json lengthsJson(const DistanceStatistics& distances, double unitMm, const std::string& unit) {
+    Json json = Json::object();
+    for (const LengthFigure& row : lengthFigures()) {
+        json[std::string(row.key) + unit] = number(distances.*row.lengthMm / unitMm);
+    }
+    return json;
+}
+
+Json deviationJson(const DistanceStatistics& distances, const AffineTransform& toFrame) {
+    Json json{{"samples", distances.samples}};
+    json.update(lengthsJson(distances, 1, "Mm"));
+    json["maxPointMm"] = vector(toFrame(distances.maxPointMm));
+    return json;
+}
+
 Json distanceJson(const DistanceStatistics& distances, const AffineTransform& toFrame) {
-    return {{"samples", distances.samples},
-            {"meanMm", number(distances.meanMm)},
-            {"rmsMm", number(distances.rmsMm)},
-            {"p95Mm", number(distances.p95Mm)},
-            {"p99Mm", number(distances.p99Mm)},
-            {"maxMm", number(distances.maxMm)},
-            {"maxPointMm", vector(toFrame(distances.maxPointMm))},
-            {"meanNormalDeviationDeg", number(distances.meanNormalDeviationDeg)},
-            {"p95NormalDeviationDeg", number(distances.p95NormalDeviationDeg)}};
+    Json json = deviationJson(distances, toFrame);
+    json["meanNormalDeviationDeg"] = number(distances.meanNormalDeviationDeg);
+    json["p95NormalDeviationDeg"] = number(distances.p95NormalDeviationDeg);
+    return json;
 }
 
 }  // namespace adaptiso

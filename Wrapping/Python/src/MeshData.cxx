@@ -74,7 +74,8 @@ Json timesJson(const SurfaceHistory& history) {
 }
 
 std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) {
-    Json surface = surfaceJson(history.record, history.extraction.method, history.index.blockSize);
+    Json surface = figuresJson(
+        surfaceFigures(), {history.record, history.extraction.method, history.index.blockSize});
     surface["output"] = nullptr;
     std::vector<Warning> warnings;
     const std::string file = history.origin.file.empty() ? "the image" : history.origin.file;

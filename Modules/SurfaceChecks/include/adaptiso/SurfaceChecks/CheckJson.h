@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "adaptiso/Json/Json.h"
@@ -24,6 +27,20 @@ Json factsJson(const SurfaceFacts& facts);
 /// \param toFrame  takes points of the report to the frame of the output
 Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
                  const AffineTransform& toFrame);
+
+/// A length that is reported of distances, by its key without a unit.
+struct LengthFigure {
+    std::string_view key, label;
+    double DistanceStatistics::*lengthMm;
+};
+std::span<const LengthFigure> lengthFigures();
+
+/// They in another unit of `unitMm`. \param unit  behind each key: "Mm"
+Json lengthsJson(const DistanceStatistics& distances, double unitMm, const std::string& unit);
+
+/// `isosurface` of an entry of adaptiso-check's `surfaces`.
+/// \param toFrame  takes points of the report to the frame of the output
+Json deviationJson(const DistanceStatistics& distances, const AffineTransform& toFrame);
 
 /// An entry of `distances` of the report adaptiso-compare/1, in millimetres.
 /// \param toFrame  takes points of the report to the frame of the output

@@ -8,7 +8,7 @@
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
-#include "adaptiso/Json/Json.h"
+#include "adaptiso/Json/Figures.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
 
 namespace adaptiso {
@@ -24,10 +24,19 @@ Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelTy
 Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions& index,
                         const ComponentSelection& selection);
 
-/// `adaptive` of an entry of `surfaces`; all null for other methods.
+/// Rows of `adaptive` of an entry of `surfaces`.
+const Figures<AdaptiveWork>& workFigures();
+/// Their object; all null for other methods.
 Json workJson(const std::optional<AdaptiveWork>& work);
 
-/// An entry of `surfaces`, without its `output`.
-Json surfaceJson(const SurfaceRecord& surface, Method method, int blockSize);
+/// A surface, and what it was made with.
+struct MadeSurface {
+    const SurfaceRecord& surface;
+    Method method;
+    int blockSize;
+};
+
+/// Rows of an entry of `surfaces`, without its `output`.
+const Figures<MadeSurface>& surfaceFigures();
 
 }  // namespace adaptiso
