@@ -134,6 +134,7 @@ class Electrodes(BemTest):
             s, c = math.sin(math.radians(36)), math.cos(math.radians(36))
             self.assertLess(math.dist(table["C3"], (-SKIN * s, 0, SKIN * c)), 2 * NEAR)
             self.assertLess(math.dist(table["Fz"], (0, SKIN * s, SKIN * c)), 2 * NEAR)
+            self.bem(*self.labels(), "--electrodes", "model/electrodes.elc", "--electrodes-in", "ras", "-o", "again", "--force")
         self.assertTrue(self.report()["electrodes"]["computed"])
 
     def test_guesses_are_told(self):

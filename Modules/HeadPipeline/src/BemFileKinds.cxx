@@ -1,12 +1,16 @@
 #include "BemFileKinds.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
+#include "adaptiso/Core/Bytes.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/ExportFreeSurfer.h"
 #include "adaptiso/HeadModel/ExportMatlab.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
+#include "adaptiso/HeadPipeline/BemChecks.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -18,92 +22,134 @@ namespace fs = std::filesystem;
 
 constexpr double kMetreMm = 1000;
 
-/// Input of all kinds.
-struct Source {
-    const BemModel& model;
-    const BemFileOptions& options;
+using Files = std::vector<std::string>;
+using Source = BemFileSource;
 
-    HeadSurface surface(std::size_t n) const { return headSurface(n, model.meshes.size()); }
-    std::optional<ImageGeometry> volume(CoordinateFrame frame) const {
-        return frame == CoordinateFrame::TkRas ? model.tkRasVolume : std::nullopt;
-    }
-    /// As FreeSurfer's files and MNE's have it.
-    CoordinateFrame mriFrame() const {
-        return model.tkRasVolume ? CoordinateFrame::TkRas : CoordinateFrame::Ras;
-    }
-    AffineTransform into(CoordinateFrame frame) const { return lpsToFrame(frame, volume(frame)); }
-    /// Brainstorm's own coordinates follow from nasion and ears; guessed ones would not be its
-    /// user's.
-    bool knowsLandmarks() const {
-        return model.electrodes && model.electrodes->landmarks &&
-               !model.electrodes->landmarks->areGuessed();
-    }
-    /// Points moved, in units of `unitMm`, with normals.
-    TriangleMesh placed(const TriangleMesh& mesh, const AffineTransform& move,
-                        double unitMm) const {
-        TriangleMesh moved = transformed(mesh, move);
-        for (Vec3& point : moved.points) point = (1 / unitMm) * point;
-        moved.normals = areaWeightedNormals(moved);
-        return moved;
-    }
-    double conductivity(std::size_t n) const {
-        return model.options.conductivities.within(surface(n), model.meshes.size());
-    }
+/// Brainstorm's own coordinates follow from nasion and ears; guessed ones would not be its user's.
+bool knowsLandmarks(const Source& source) {
+    return source.hasLandmarks() && !source.model.electrodes->landmarks->areGuessed();
+}
+
+/// Points moved, in units of `unitMm`, with normals.
+TriangleMesh placed(const TriangleMesh& mesh, const AffineTransform& move, double unitMm) {
+    TriangleMesh moved = transformed(mesh, move);
+    for (Vec3& point : moved.points) point = (1 / unitMm) * point;
+    moved.normals = areaWeightedNormals(moved);
+    return moved;
+}
+
+/// How files of one format hold surfaces.
+struct StoredSurfaces {
+    AffineTransform fromLps;                    ///< of the points stored
+    double unitMm = 1;                          ///< the same
+    std::vector<const TriangleMesh*> meshes{};  ///< from inside out
+    std::vector<double> gapsMm{};               ///< promised between these
+    bool keepsPromises = true;  ///< they are the model's, not just pictures of the head
 };
 
-/// A kind that holds the whole model in a frame and a unit.
-BemFileKind wholeModel(const Source& source, std::string name, const AffineTransform& fromLps,
-                       double unitMm = 1) {
-    BemFileKind kind{std::move(name), fromLps, unitMm, {}, {}, true, {}, {}};
-    for (const TriangleMesh& mesh : source.model.meshes) kind.meshes.push_back(&mesh);
-    kind.gapsMm = source.model.options.minGapsMm();
-    return kind;
+/// The whole model.
+StoredSurfaces wholeModel(const Source& source, const AffineTransform& fromLps, double unitMm = 1) {
+    StoredSurfaces held{fromLps, unitMm};
+    for (const TriangleMesh& mesh : source.model.meshes) held.meshes.push_back(&mesh);
+    held.gapsMm = source.model.options.minGapsMm();
+    return held;
+}
+
+/// Between corners of the same triangles: STL files number vertices anew.
+double farthestMm(const TriangleMesh& a, const TriangleMesh& b) {
+    if (a.points.size() != b.points.size() || a.triangles.size() != b.triangles.size()) {
+        return std::numeric_limits<double>::infinity();
+    }
+    double farthest = 0;
+    for (std::size_t t = 0; t < a.triangles.size(); ++t) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const double mm =
+                norm(a.points[a.triangles[t][corner]] - b.points[b.triangles[t][corner]]);
+            if (!(mm <= farthest)) farthest = mm;
+        }
+    }
+    return farthest;
+}
+
+/// The surfaces lie where they should, and keep what checkModel() promises of them.
+/// \param stored  in the file's coordinates
+BemFileFault checkSurfaces(const Source& source, const StoredSurfaces& held,
+                           const std::vector<TriangleMesh>& stored) {
+    const AffineTransform toLps = inverse(held.fromLps);
+    std::vector<TriangleMesh> inMm = stored;
+    double farthest =
+        stored.size() == held.meshes.size() ? 0 : std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < inMm.size() && farthest <= kFileRoundingMm; ++n) {
+        for (Vec3& p : inMm[n].points) p = held.unitMm * p;
+        farthest = std::max(farthest, farthestMm(transformed(inMm[n], toLps), *held.meshes[n]));
+    }
+    if (!(farthest <= kFileRoundingMm)) {
+        return source.fault("a vertex lies " + formatNumber(farthest) + " mm from where it should");
+    }
+    if (!held.keepsPromises) return std::nullopt;
+    for (const ModelCheck& each : askOfModel(inMm, held.gapsMm).checks) {
+        if (!each.check.breaksProfile()) continue;
+        return Finding{each.subject + ": " + std::string(each.check.name) + ": " +
+                           each.check.finding + " (in the file's coordinates)",
+                       toLps(each.pointMm)};
+    }
+    return std::nullopt;
+}
+
+/// Files of the model's surfaces, of those of all.
+Files ofSurfaces(const Source& source, const Files& files) {
+    Files names;
+    for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
+        names.push_back(files[static_cast<std::size_t>(source.surface(n))]);
+    }
+    return names;
 }
 
 using WriteSurface =
     std::function<void(std::size_t n, const TriangleMesh& mesh, const fs::path& path)>;
-using ReadSurface = std::function<TriangleMesh(const fs::path& path)>;
 
 TriangleMesh readOne(const fs::path& path) {
     return readMesh(path).mesh;
 }
 
-/// A file for each surface.
-BemFileKind oneEach(BemFileKind kind, const std::vector<std::string>& names,
-                    const WriteSurface& write, const ReadSurface& read = readOne) {
-    kind.write = [meshes = kind.meshes, names, write](const PlaceFile& place) {
-        for (std::size_t n = 0; n < meshes.size(); ++n) write(n, *meshes[n], place(names[n]));
-    };
-    kind.read = [names, read](const fs::path& folder) {
-        std::vector<TriangleMesh> stored;
-        for (const std::string& name : names) stored.push_back(read(folder / name));
-        return stored;
-    };
-    return kind;
+/// A file for each surface of the model.
+BemFileKind oneEach(const Source& source, const Files& files, const StoredSurfaces& held,
+                    const WriteSurface& write, TriangleMesh (*read)(const fs::path&) = readOne) {
+    const Files names = ofSurfaces(source, files);
+    return {[=](const PlaceFile& place) {
+                for (std::size_t n = 0; n < names.size(); ++n) {
+                    write(n, *held.meshes[n], place(names[n]));
+                }
+            },
+            [=](const fs::path& folder) {
+                std::vector<TriangleMesh> stored;
+                for (const std::string& name : names) stored.push_back(read(folder / name));
+                return checkSurfaces(source, held, stored);
+            }};
 }
 
-/// "inner_skull.surf", ... of all surfaces.
-std::vector<std::string> namesOf(const Source& source, const char* extension) {
-    std::vector<std::string> names;
-    for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
-        names.push_back(bemFileName(source.surface(n), extension));
-    }
-    return names;
+/// One file for all.
+BemFileKind allInOne(const Source& source, const Files& files, const StoredSurfaces& held,
+                     const std::function<void(const fs::path&)>& write,
+                     std::vector<TriangleMesh> (*read)(const fs::path&)) {
+    return {[=](const PlaceFile& place) { write(place(files.front())); },
+            [=](const fs::path& folder) {
+                return checkSurfaces(source, held, read(folder / files.front()));
+            }};
 }
 
-BemFileKind freeSurferFiles(const Source& source) {
-    return oneEach(
-        wholeModel(source, "*.surf", source.into(source.mriFrame())), namesOf(source, ".surf"),
-        [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
-            writeFreeSurferSurface(mesh, path, source.model.tkRasVolume, source.model.tkRasName);
-        });
+BemFileKind freeSurferFiles(const Source& source, const Files& files) {
+    return oneEach(source, files, wholeModel(source, source.into(source.mriFrame())),
+                   [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
+                       writeFreeSurferSurface(mesh, path, source.model.tkRasVolume,
+                                              source.model.tkRasName);
+                   });
 }
 
-BemFileKind openMeegFiles(const Source& source) {
+BemFileKind openMeegFiles(const Source& source, const Files& files) {
     const BemFileOptions& options = source.options;
     const double unitMm = options.unit == OpenMeegUnit::Metres ? kMetreMm : 1;
-    return oneEach(wholeModel(source, "*.tri", source.into(options.frame), unitMm),
-                   namesOf(source, ".tri"),
+    return oneEach(source, files, wholeModel(source, source.into(options.frame), unitMm),
                    [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
                        writeOpenMeegSurface(mesh, path, source.options.frame, source.options.unit,
                                             source.volume(source.options.frame));
@@ -111,67 +157,57 @@ BemFileKind openMeegFiles(const Source& source) {
 }
 
 /// .gii and .vtp
-BemFileKind viewerFiles(const Source& source, const char* extension) {
-    return oneEach(
-        wholeModel(source, std::string("*") + extension, source.into(source.options.frame)),
-        namesOf(source, extension),
-        [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
-            MeshWriteOptions write;
-            write.frame = source.options.frame;
-            write.volume = source.volume(write.frame);
-            writeMesh(mesh, path, write);
-        });
+BemFileKind viewerFiles(const Source& source, const Files& files) {
+    return oneEach(source, files, wholeModel(source, source.into(source.options.frame)),
+                   [source](std::size_t, const TriangleMesh& mesh, const fs::path& path) {
+                       MeshWriteOptions write;
+                       write.frame = source.options.frame;
+                       write.volume = source.volume(write.frame);
+                       writeMesh(mesh, path, write);
+                   });
 }
 
 /// SimNIBS's own frame is the scanner's.
-BemFileKind simNibsFiles(const Source& source) {
-    std::vector<std::string> names;
-    for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
-        names.push_back(simNibsName(source.surface(n)));
-    }
+BemFileKind simNibsFiles(const Source& source, const Files& files) {
     return oneEach(
-        wholeModel(source, "*.stl", source.into(CoordinateFrame::Ras)), names,
+        source, files, wholeModel(source, source.into(CoordinateFrame::Ras)),
         [](std::size_t, const TriangleMesh& mesh, const fs::path& path) { writeMesh(mesh, path); });
 }
 
 /// In Brainstorm's own coordinates where they are known, else in the scanner's.
-BemFileKind brainstormFiles(const Source& source) {
-    std::vector<std::string> names;
-    for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
-        names.push_back(brainstormName(source.surface(n)));
-    }
-    const bool isScs = source.knowsLandmarks();
+BemFileKind brainstormFiles(const Source& source, const Files& files) {
+    const bool isScs = knowsLandmarks(source);
     const AffineTransform move = isScs ? toBrainstorm(*source.model.electrodes->landmarks)
                                        : source.into(CoordinateFrame::Ras);
     return oneEach(
-        wholeModel(source, "tess_*_bem.mat", move, kMetreMm), names,
+        source, files, wholeModel(source, move, kMetreMm),
         [source, move, isScs](std::size_t n, const TriangleMesh& mesh, const fs::path& path) {
-            writeBrainstormSurface(source.placed(mesh, move, kMetreMm), path,
+            writeBrainstormSurface(placed(mesh, move, kMetreMm), path,
                                    std::string(toString(source.surface(n))) +
                                        (isScs ? " (SCS, m)" : " (world: scanner RAS, m; not SCS)"));
         },
         readBrainstormSurface);
 }
 
-BemFileKind fieldTripFile(const Source& source) {
-    BemFileKind kind = wholeModel(source, kFieldTripFile, source.into(source.options.frame));
-    kind.write = [source](const PlaceFile& place) {
-        std::vector<HeadLayer> layers;
-        const CoordinateFrame frame = source.options.frame;
-        for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
-            layers.push_back({source.surface(n), source.conductivity(n),
-                              source.placed(source.model.meshes[n], source.into(frame), 1)});
-        }
-        writeFieldTripModel(layers, place(kFieldTripFile), frame);
-    };
-    kind.read = [](const fs::path& folder) {
-        std::vector<TriangleMesh> stored;
-        for (HeadLayer& layer : readFieldTripModel(folder / kFieldTripFile)) {
-            stored.push_back(std::move(layer.mesh));
-        }
-        return stored;
-    };
-    return kind;
+BemFileKind fieldTripFile(const Source& source, const Files& files) {
+    const CoordinateFrame frame = source.options.frame;
+    return allInOne(
+        source, files, wholeModel(source, source.into(frame)),
+        [source, frame](const fs::path& path) {
+            std::vector<HeadLayer> layers;
+            for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
+                layers.push_back({source.surface(n), source.conductivity(n),
+                                  placed(source.model.meshes[n], source.into(frame), 1)});
+            }
+            writeFieldTripModel(layers, path, frame);
+        },
+        [](const fs::path& path) {
+            std::vector<TriangleMesh> stored;
+            for (HeadLayer& layer : readFieldTripModel(path)) {
+                stored.push_back(std::move(layer.mesh));
+            }
+            return stored;
+        });
 }
 
 /// FIFF's number of a surface.
@@ -191,67 +227,127 @@ std::vector<TriangleMesh> readFiffMeshes(const fs::path& path) {
 
 /// Outermost first, as MNE writes them. MNE has no number for a brain within CSF: it gets the rest,
 /// with the brain's conductivity within the inner skull.
-BemFileKind fiffModel(const Source& source) {
-    BemFileKind kind = wholeModel(source, kFiffModel, source.into(source.mriFrame()), kMetreMm);
+BemFileKind fiffModel(const Source& source, const Files& files) {
+    const AffineTransform move = source.into(source.mriFrame());
+    StoredSurfaces held = wholeModel(source, move, kMetreMm);
     const std::size_t first = source.model.options.boundaries.withBrain ? 1 : 0;
     if (first > 0) {
-        kind.meshes.erase(kind.meshes.begin());
-        kind.gapsMm.erase(kind.gapsMm.begin());
+        held.meshes.erase(held.meshes.begin());
+        held.gapsMm.erase(held.gapsMm.begin());
     }
-    kind.write = [source, first](const PlaceFile& place) {
-        std::vector<FiffSurface> surfaces;
-        for (std::size_t n = source.model.meshes.size(); n-- > first;) {
-            surfaces.push_back(
-                {fiffId(source.surface(n)),
-                 n == first ? source.model.options.conductivities.brain : source.conductivity(n),
-                 source.placed(source.model.meshes[n], source.into(source.mriFrame()), kMetreMm)});
-        }
-        writeFiffSurfaces(surfaces, place(kFiffModel));
-    };
-    kind.read = [](const fs::path& folder) { return readFiffMeshes(folder / kFiffModel); };
-    return kind;
+    return allInOne(
+        source, files, held,
+        [source, first, move](const fs::path& path) {
+            std::vector<FiffSurface> surfaces;
+            for (std::size_t n = source.model.meshes.size(); n-- > first;) {
+                surfaces.push_back({fiffId(source.surface(n)),
+                                    n == first ? source.model.options.conductivities.brain
+                                               : source.conductivity(n),
+                                    placed(source.model.meshes[n], move, kMetreMm)});
+            }
+            writeFiffSurfaces(surfaces, path);
+        },
+        readFiffMeshes);
 }
 
-BemFileKind fiffHead(const Source& source, const char* name, const TriangleMesh& head) {
-    BemFileKind kind{name, source.into(source.mriFrame()), kMetreMm, {&head}, {}, false, {}, {}};
-    kind.write = [source, name, &head](const PlaceFile& place) {
-        const FiffSurface surface{fiffId(HeadSurface::OuterSkin), 1.0,
-                                  source.placed(head, source.into(source.mriFrame()), kMetreMm)};
-        writeFiffSurfaces({&surface, 1}, place(name));
+BemFileKind fiffHead(const Source& source, const Files& files, const TriangleMesh& head) {
+    const AffineTransform move = source.into(source.mriFrame());
+    return allInOne(
+        source, files, {move, kMetreMm, {&head}, {}, false},
+        [move, &head](const fs::path& path) {
+            const FiffSurface surface{fiffId(HeadSurface::OuterSkin), 1.0,
+                                      placed(head, move, kMetreMm)};
+            writeFiffSurfaces({&surface, 1}, path);
+        },
+        readFiffMeshes);
+}
+
+/// OpenMEEG's .geom and .cond. Its reader checks every rule of theirs.
+BemFileKind openMeegModel(const Source& source, const Files& files) {
+    return {
+        [=](const PlaceFile& place) {
+            Files surfaces;
+            for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
+                surfaces.push_back(bemFileName(source.surface(n), ".tri"));
+            }
+            writeText(place(files[0]), openMeegGeometry(surfaces));
+            writeText(place(files[1]), openMeegConductivities(source.model.meshes.size(),
+                                                              source.model.options.conductivities));
+        },
+        [=](const fs::path& folder) -> BemFileFault {
+            const OpenMeegModel stored = readOpenMeegModel(folder / files[0], folder / files[1]);
+            for (std::size_t n = 0; n < source.model.meshes.size(); ++n) {
+                constexpr double kDigits = 1e-6;
+                const OpenMeegDomain& domain = stored.domains[n];
+                if (std::abs(domain.conductivity - source.conductivity(n)) <= kDigits) continue;
+                return source.fault("the conductivity of " + domain.name + " is " +
+                                    formatNumber(domain.conductivity) + " S/m, must be " +
+                                    formatNumber(source.conductivity(n)));
+            }
+            return std::nullopt;
+        }};
+}
+
+Files filesOf(const char* extension) {
+    Files names;
+    for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
+        names.push_back(bemFileName(headSurface(n, kHeadSurfaceCount), extension));
+    }
+    return names;
+}
+
+std::vector<BemFileRow> allRows() {
+    constexpr auto kAlways = [](const Source&) { return true; };
+    constexpr auto kWithHead = [](const Source& s) {
+        return s.options.writesFif && s.model.headShape.has_value();
     };
-    kind.read = [name](const fs::path& folder) { return readFiffMeshes(folder / name); };
-    return kind;
+    std::vector<BemFileRow> rows{
+        {"*.surf", filesOf(".surf"), kAlways, freeSurferFiles},
+        {"*.tri", filesOf(".tri"), kAlways, openMeegFiles},
+        {"*.gii", filesOf(".gii"), [](const Source& s) { return s.options.writesGifti; },
+         viewerFiles},
+        {"*.vtp", filesOf(".vtp"), [](const Source& s) { return s.options.writesVtp; },
+         viewerFiles},
+        {kFiffModel, {kFiffModel}, [](const Source& s) { return s.options.writesFif; }, fiffModel},
+        {kFiffDenseHead,
+         {kFiffDenseHead},
+         kWithHead,
+         [](const Source& s, const Files& files) {
+             return fiffHead(s, files, s.model.headShape->dense);
+         }},
+        {kFiffSparseHead,
+         {kFiffSparseHead},
+         kWithHead,
+         [](const Source& s, const Files& files) {
+             return fiffHead(s, files, s.model.headShape->sparse);
+         }},
+        {"headmodel.mat",
+         {"headmodel.mat"},
+         [](const Source& s) { return s.options.writesFieldTrip; },
+         fieldTripFile},
+        {"tess_*_bem.mat",
+         {"tess_brain_bem.mat", "tess_innerskull_bem.mat", "tess_outerskull_bem.mat",
+          "tess_head_bem.mat"},
+         [](const Source& s) { return s.options.writesBrainstorm; },
+         brainstormFiles},
+        {"*.stl",
+         {"gm.stl", "csf.stl", "bone.stl", "skin.stl"},
+         [](const Source& s) { return s.options.writesSimNibs; },
+         simNibsFiles}};
+    for (BemFileRow& row : pointFileRows()) rows.push_back(std::move(row));
+    rows.push_back({"model.geom, model.cond",
+                    {"model.geom", "model.cond"},
+                    kAlways,
+                    openMeegModel,
+                    "keep OpenMEEG's rules"});
+    return rows;
 }
 
 }  // namespace
 
-std::string simNibsName(HeadSurface surface) {
-    constexpr std::array<const char*, kHeadSurfaceCount> kNames{"gm.stl", "csf.stl", "bone.stl",
-                                                                "skin.stl"};
-    return kNames[static_cast<std::size_t>(surface)];
-}
-
-std::string brainstormName(HeadSurface surface) {
-    constexpr std::array<const char*, kHeadSurfaceCount> kNames{
-        "tess_brain_bem.mat", "tess_innerskull_bem.mat", "tess_outerskull_bem.mat",
-        "tess_head_bem.mat"};
-    return kNames[static_cast<std::size_t>(surface)];
-}
-
-std::vector<BemFileKind> bemFileKinds(const BemModel& model, const BemFileOptions& options) {
-    const Source source{model, options};
-    std::vector<BemFileKind> kinds{freeSurferFiles(source), openMeegFiles(source)};
-    if (options.writesGifti) kinds.push_back(viewerFiles(source, ".gii"));
-    if (options.writesVtp) kinds.push_back(viewerFiles(source, ".vtp"));
-    if (options.writesFif) kinds.push_back(fiffModel(source));
-    if (options.writesFif && model.headShape) {
-        kinds.push_back(fiffHead(source, kFiffDenseHead, model.headShape->dense));
-        kinds.push_back(fiffHead(source, kFiffSparseHead, model.headShape->sparse));
-    }
-    if (options.writesFieldTrip) kinds.push_back(fieldTripFile(source));
-    if (options.writesBrainstorm) kinds.push_back(brainstormFiles(source));
-    if (options.writesSimNibs) kinds.push_back(simNibsFiles(source));
-    return kinds;
+const std::vector<BemFileRow>& bemFileRows() {
+    static const std::vector<BemFileRow> rows = allRows();
+    return rows;
 }
 
 }  // namespace adaptiso

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint32_t kVoid = 0, kInt = 3, kFloat = 4, kString = 10, kIdStruct = 31,
                         kDigPointStruct = 33, kTransformStruct = 35, kMatrix = 0x40000000;
-constexpr std::size_t kIdBytes = 20;
+constexpr std::size_t kIdBytes = 20, kTransformBytes = 104;
 constexpr std::int32_t kVersion = (1 << 16) | 4;
 constexpr auto kBig = std::endian::big;
 
@@ -131,6 +131,33 @@ std::vector<std::array<std::int32_t, 3>> toTriples(const Tag& tag) {
     return rows;
 }
 
+std::vector<std::int32_t> toInts(const Tag& tag) {
+    requireType(tag, kInt, 0);
+    std::vector<std::int32_t> values(tag.data.size() / sizeof(std::int32_t));
+    const char* at = tag.data.data();
+    for (std::int32_t& value : values) {
+        value = loadAs<std::int32_t>(at, kBig);
+        at += sizeof(value);
+    }
+    return values;
+}
+
+AffineTransform toTransform(const Tag& tag) {
+    requireType(tag, kTransformStruct, kTransformBytes);
+    AffineTransform transform;
+    const char* at = tag.data.data() + 2 * sizeof(std::int32_t);
+    const auto next = [&] {
+        const auto value = loadAs<float>(at, kBig);
+        at += sizeof(value);
+        return double{value};
+    };
+    for (int row = 0; row < 3; ++row) {
+        for (Vec3& column : transform.linear.column) column[row] = next();
+    }
+    for (int axis = 0; axis < 3; ++axis) transform.offset[axis] = next();
+    return transform;
+}
+
 DigitizedPoint toPoint(const Tag& tag) {
     constexpr std::size_t kBytes = 20;
     requireType(tag, kDigPointStruct, kBytes);
@@ -206,7 +233,7 @@ void Writer::putPoint(std::int32_t pointKind, std::int32_t number, const Vec3& m
 }
 
 void Writer::putTransform(std::int32_t from, std::int32_t to, const AffineTransform& metres) {
-    header(kCoordTrans, kTransformStruct, 104);
+    header(kCoordTrans, kTransformStruct, kTransformBytes);
     sink_.bigEndian(from);
     sink_.bigEndian(to);
     for (const AffineTransform& transform : {metres, inverse(metres)}) {
@@ -339,21 +366,18 @@ void requireCount(const fiff::Content& content, std::size_t block, std::int32_t 
             std::to_string(there));
 }
 
-FiffSurface decodeSurface(const fiff::Content& content, std::size_t block) {
-    FiffSurface surface;
-    if (const fiff::Tag* id = content.find(block, fiff::kSurfaceId)) surface.id = fiff::toInt(*id);
-    if (const fiff::Tag* sigma = content.find(block, fiff::kSigma)) {
-        surface.conductivity = fiff::toReal(*sigma);
-        if (!std::isfinite(surface.conductivity)) damaged("a conductivity is not finite");
-    }
-    requireMriFrame(content, block);
-    surface.mesh.points = fiff::toVectors(require(content, block, fiff::kNodes, "points"));
-    for (const Vec3& point : surface.mesh.points) {
+/// Finite points, or normals.
+std::vector<Vec3> pointsIn(const fiff::Content& content, std::size_t block, std::int32_t kind) {
+    std::vector<Vec3> points = fiff::toVectors(require(content, block, kind, "points"));
+    for (const Vec3& point : points) {
         if (!std::isfinite(squaredNorm(point))) damaged("a point is not finite");
     }
-    const auto points = static_cast<VertexId>(surface.mesh.points.size());
-    for (const auto& row :
-         fiff::toTriples(require(content, block, fiff::kTriangles, "triangles"))) {
+    return points;
+}
+
+void takeTriangles(const fiff::Tag& tag, TriangleMesh& mesh) {
+    const auto points = static_cast<VertexId>(mesh.points.size());
+    for (const auto& row : fiff::toTriples(tag)) {
         Triangle triangle;
         for (std::size_t corner = 0; corner < 3; ++corner) {
             triangle[corner] = VertexId{row[corner]} - 1;
@@ -362,11 +386,70 @@ FiffSurface decodeSurface(const fiff::Content& content, std::size_t block) {
                         std::to_string(points));
             }
         }
-        surface.mesh.triangles.push_back(triangle);
+        mesh.triangles.push_back(triangle);
     }
+}
+
+FiffSurface decodeSurface(const fiff::Content& content, std::size_t block) {
+    FiffSurface surface;
+    if (const fiff::Tag* id = content.find(block, fiff::kSurfaceId)) surface.id = fiff::toInt(*id);
+    if (const fiff::Tag* sigma = content.find(block, fiff::kSigma)) {
+        surface.conductivity = fiff::toReal(*sigma);
+        if (!std::isfinite(surface.conductivity)) damaged("a conductivity is not finite");
+    }
+    requireMriFrame(content, block);
+    surface.mesh.points = pointsIn(content, block, fiff::kNodes);
+    takeTriangles(require(content, block, fiff::kTriangles, "triangles"), surface.mesh);
     requireCount(content, block, fiff::kNodeCount, surface.mesh.points.size(), "points");
     requireCount(content, block, fiff::kTriangleCount, surface.mesh.triangles.size(), "triangles");
     return surface;
+}
+
+FiffSources decodeSources(const fiff::Content& content, std::size_t block) {
+    FiffSources sources;
+    TriangleMesh& mesh = sources.mesh;
+    requireMriFrame(content, block);
+    mesh.points = pointsIn(content, block, fiff::kSourcePoints);
+    for (const Vec3& normal : pointsIn(content, block, fiff::kSourceNormals)) {
+        mesh.normals.push_back(toNormal(normal));
+    }
+    const fiff::Tag& selection = require(content, block, fiff::kSourceSelection, "selection");
+    const std::vector<std::int32_t> isUsed = fiff::toInts(selection);
+    for (std::size_t n = 0; n < isUsed.size(); ++n) {
+        if (isUsed[n] != 0) sources.used.push_back(static_cast<std::int64_t>(n));
+    }
+    requireCount(content, block, fiff::kSourcePointCount, mesh.points.size(), "points");
+    requireCount(content, block, fiff::kSourcePointCount, isUsed.size(), "selected points");
+    requireCount(content, block, fiff::kSourcesUsed, sources.used.size(), "sources");
+    if (const fiff::Tag* const triangles = content.find(block, fiff::kSourceTriangles)) {
+        takeTriangles(*triangles, mesh);
+    }
+    requireCount(content, block, fiff::kSourceTriangleCount, mesh.triangles.size(), "triangles");
+    if (const fiff::Tag* const id = content.find(block, fiff::kSourceId)) {
+        sources.id = fiff::toInt(*id);
+        return sources;
+    }
+    std::size_t parent = block + 1;
+    while (parent < content.blocks.size() && content.blocks[parent].kind != fiff::kMneParentMri) {
+        ++parent;
+    }
+    const std::vector<std::int32_t> size =
+        fiff::toInts(require(content, block, fiff::kSourceGridSize, "grid"));
+    std::vector<AffineTransform> moves;
+    for (const fiff::Tag& tag : content.tags) {
+        if (tag.kind != fiff::kCoordTrans || (tag.block != block && tag.block != parent)) continue;
+        moves.push_back(fiff::toTransform(tag));
+    }
+    if (size.size() != 3 || moves.size() != 3) damaged("a grid lacks its size or a transform");
+    FiffSources::Grid& grid = sources.grid.emplace();
+    std::ranges::copy(size, grid.size.begin());
+    grid.toMri = moves[0];
+    grid.mriToRas = moves[1];
+    grid.imageToMri = moves[2];
+    grid.imageSize = {fiff::toInt(require(content, parent, fiff::kMriWidth, "image's width")),
+                      fiff::toInt(require(content, parent, fiff::kMriHeight, "image's height")),
+                      fiff::toInt(require(content, parent, fiff::kMriDepth, "image's depth"))};
+    return sources;
 }
 
 }  // namespace
@@ -519,6 +602,26 @@ std::vector<std::filesystem::path> surfacePaths(const std::filesystem::path& pat
     std::vector<std::filesystem::path> paths;
     for (const std::string& name : names) paths.emplace_back(path.string() + ":" + name);
     return paths;
+}
+
+std::vector<FiffSources> readFiffSources(const std::filesystem::path& path) {
+    const std::string bytes = readBytes(path);
+    return meshio::naming(path.string(), [&] {
+        const fiff::Content content = fiff::decode(bytes);
+        std::vector<FiffSources> spaces;
+        for (std::size_t block = 1; block < content.blocks.size(); ++block) {
+            if (content.blocks[block].kind != fiff::kMneSources) continue;
+            spaces.push_back(decodeSources(content, block));
+        }
+        return spaces;
+    });
+}
+
+AffineTransform readFiffHeadToMri(const std::filesystem::path& path) {
+    const std::string bytes = readBytes(path);
+    return meshio::naming(path.string(), [&] {
+        return fiff::toTransform(require(fiff::decode(bytes), 0, fiff::kCoordTrans, "transform"));
+    });
 }
 
 std::vector<FiffSurface> readFiffSurfaces(const std::filesystem::path& path) {

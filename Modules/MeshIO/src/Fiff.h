@@ -71,6 +71,11 @@ float toReal(const Tag& tag);
 std::vector<Vec3> toVectors(const Tag& tag);
 std::vector<std::array<std::int32_t, 3>> toTriples(const Tag& tag);
 
+/// Integers of a list.
+std::vector<std::int32_t> toInts(const Tag& tag);
+/// What putTransform() writes, without the inverse.
+AffineTransform toTransform(const Tag& tag);
+
 /// A point of a digitizer.
 struct DigitizedPoint {
     std::int32_t kind = 0;  ///< 1 cardinal, 2 HPI, 3 EEG, 4 extra

@@ -45,13 +45,25 @@ public:
     }
     template <class Number>
     Number number() {
-        const std::string_view word = next();
-        Number value{};
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size()) {
-            fail("a number is due where there is '" + visibleAscii(word.substr(0, 20)) + "'");
+        return parsed<Number>(next());
+    }
+    /// All numbers before a word.
+    template <class Number>
+    std::vector<Number> numbersUntil(std::string_view word) {
+        std::vector<Number> numbers;
+        for (std::string_view found = next(); found != word; found = next()) {
+            numbers.push_back(parsed<Number>(found));
         }
-        return value;
+        return numbers;
+    }
+    Vec3 point() {
+        Vec3 p;
+        for (int a = 0; a < 3; ++a) p[a] = number<double>();
+        if (!std::isfinite(squaredNorm(p))) fail("a point is not finite");
+        return p;
+    }
+    void require(std::string_view word) {
+        if (next() != word) fail("it lacks " + std::string(word));
     }
     /// A number of things of which each takes two bytes or more.
     std::int64_t count() {
@@ -81,6 +93,15 @@ public:
     }
 
 private:
+    template <class Number>
+    Number parsed(std::string_view word) const {
+        Number value{};
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || end != word.data() + word.size()) {
+            fail("a number is due where there is '" + visibleAscii(word.substr(0, 20)) + "'");
+        }
+        return value;
+    }
     static bool isSpace(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
     std::string_view bytes_, name_;
@@ -199,11 +220,8 @@ TetrahedralMesh decodeTetgen(std::string_view nodes, std::string_view elements,
     for (std::int64_t n = 0; n < points; ++n) {
         const auto number = words.number<std::int64_t>();
         if (n == 0) first = number;
-        Vec3 p;
-        for (int a = 0; a < 3; ++a) p[a] = words.number<double>();
-        if (!std::isfinite(squaredNorm(p))) words.fail("a point is not finite");
+        mesh.points.push_back(words.point());
         for (int k = 0; k < attributes + markers; ++k) words.next();
-        mesh.points.push_back(p);
     }
     words.requireEnd("points");
     Words rows(elements, name);
@@ -231,10 +249,7 @@ TetrahedralMesh decodeGmsh(std::string_view bytes, std::string_view name) {
     const std::int64_t points = words.count();
     for (std::int64_t n = 0; n < points; ++n) {
         number[words.number<std::int64_t>()] = n;
-        Vec3 p;
-        for (int a = 0; a < 3; ++a) p[a] = words.number<double>();
-        if (!std::isfinite(squaredNorm(p))) words.fail("a point is not finite");
-        mesh.points.push_back(p);
+        mesh.points.push_back(words.point());
     }
     if (words.next() != "$EndNodes") words.fail("it holds more points than it counts");
     words.skipTo("$Elements");
@@ -268,6 +283,115 @@ TetrahedralMesh decodeGmsh(std::string_view bytes, std::string_view name) {
     requireInRange(mesh, words);
     turnNegative(mesh);
     return mesh;
+}
+
+namespace {
+
+/// Of lists of coordinates, corners and labels.
+TetrahedralMesh meshOf(const std::vector<double>& coordinates,
+                       const std::vector<std::int64_t>& corners, std::vector<std::int32_t> labels,
+                       const Words& words) {
+    TetrahedralMesh mesh;
+    mesh.labels = std::move(labels);
+    if (coordinates.size() % 3 != 0 || corners.size() != 4 * mesh.labels.size()) {
+        words.fail("a point or an element lacks a number");
+    }
+    for (std::size_t n = 0; n < coordinates.size(); n += 3) {
+        mesh.points.push_back({coordinates[n], coordinates[n + 1], coordinates[n + 2]});
+    }
+    for (std::size_t n = 0; n < corners.size(); n += 4) {
+        mesh.tetrahedra.push_back({corners[n], corners[n + 1], corners[n + 2], corners[n + 3]});
+    }
+    requireInRange(mesh, words);
+    return mesh;
+}
+
+TetrahedralMesh decodeMsh41(Words words) {
+    TetrahedralMesh mesh;
+    words.skipTo("$Nodes");
+    if (words.number<int>() != 1) words.fail("it has more than one block of points");
+    const std::int64_t points = words.count();
+    for (int n = 0; n < 5; ++n) words.number<std::int64_t>();
+    if (words.count() != points) words.fail("it counts its points in two ways");
+    for (std::int64_t n = 1; n <= points; ++n) {
+        if (words.number<std::int64_t>() != n) words.fail("its points are not numbered from 1");
+    }
+    for (std::int64_t n = 0; n < points; ++n) mesh.points.push_back(words.point());
+    words.require("$EndNodes");
+    words.require("$Elements");
+    const std::int64_t blocks = words.count(), elements = words.count();
+    for (int n = 0; n < 2; ++n) words.number<std::int64_t>();
+    for (std::int64_t block = 0; block < blocks; ++block) {
+        if (words.number<int>() != 3) words.fail("an element has no volume");
+        const auto label = words.number<std::int32_t>();
+        if (words.number<int>() != 4) words.fail("an element is no tetrahedron");
+        const std::int64_t count = words.count();
+        for (std::int64_t n = 0; n < count; ++n) {
+            words.number<std::int64_t>();
+            for (VertexId& v : mesh.tetrahedra.emplace_back()) v = words.number<std::int64_t>() - 1;
+            mesh.labels.push_back(label);
+        }
+    }
+    words.require("$EndElements");
+    if (elements != std::ssize(mesh.labels)) words.fail("it counts its elements in two ways");
+    requireInRange(mesh, words);
+    return mesh;
+}
+
+TetrahedralMesh decodeVtu(Words words, std::string_view bytes) {
+    const auto skipToArray = [&](std::string_view name) {
+        words.skipTo(name);
+        words.require("format=\"ascii\">");
+    };
+    skipToArray("Name=\"tissue\"");
+    auto labels = words.numbersUntil<std::int32_t>("</DataArray>");
+    skipToArray("NumberOfComponents=\"3\"");
+    const auto coordinates = words.numbersUntil<double>("</DataArray>");
+    skipToArray("Name=\"connectivity\"");
+    const auto corners = words.numbersUntil<std::int64_t>("</DataArray>");
+    TetrahedralMesh mesh = meshOf(coordinates, corners, std::move(labels), words);
+    const std::string counts = "NumberOfPoints=\"" + text(std::ssize(mesh.points)) +
+                               "\" NumberOfCells=\"" + text(std::ssize(mesh.labels)) + "\"";
+    if (bytes.find(counts) == bytes.npos) words.fail("it counts its points or cells otherwise");
+    skipToArray("Name=\"offsets\"");
+    const auto offsets = words.numbersUntil<std::int64_t>("</DataArray>");
+    skipToArray("Name=\"types\"");
+    const auto types = words.numbersUntil<int>("</DataArray>");
+    bool areTetrahedra = offsets.size() == mesh.labels.size() && types.size() == offsets.size();
+    for (std::size_t n = 0; areTetrahedra && n < types.size(); ++n) {
+        areTetrahedra = types[n] == 10 && offsets[n] == static_cast<std::int64_t>(4 * (n + 1));
+    }
+    if (!areTetrahedra) words.fail("a cell is no tetrahedron");
+    return mesh;
+}
+
+TetrahedralMesh decodeDgf(Words words) {
+    words.require("DGF");
+    words.require("Vertex");
+    const auto coordinates = words.numbersUntil<double>("Simplex");
+    words.require("parameters");
+    words.require("1");
+    const auto rows = words.numbersUntil<std::int64_t>("BoundaryDomain");
+    std::vector<std::int64_t> corners;
+    std::vector<std::int32_t> labels;
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+        if (n % 5 == 4) {
+            labels.push_back(static_cast<std::int32_t>(rows[n]));
+        } else {
+            corners.push_back(rows[n]);
+        }
+    }
+    return meshOf(coordinates, corners, std::move(labels), words);
+}
+
+}  // namespace
+
+TetrahedralMesh decodeTetrahedra(std::string_view bytes, std::string_view name) {
+    const Words words(bytes, name);
+    if (bytes.starts_with("DGF")) return decodeDgf(words);
+    if (bytes.starts_with("<?xml")) return decodeVtu(words, bytes);
+    if (bytes.starts_with("$MeshFormat\n4.1")) return decodeMsh41(words);
+    return decodeGmsh(bytes, name);
 }
 
 }  // namespace adaptiso

@@ -21,40 +21,16 @@ struct BemFileOptions {
     /// in the frame of the FreeSurfer files.
     bool writesFif = false;
     bool writesFieldTrip = false;  ///< headmodel.mat
-    bool writesBrainstorm =
-        false;  ///< tess_*_bem.mat: SCS of landmarks that are known, else scanner RAS; metres
+    /// tess_*_bem.mat, in metres: in SCS where landmarks are known, else in scanner RAS.
+    bool writesBrainstorm = false;
     bool writesSimNibs = false;  ///< csf.stl, bone.stl, skin.stl: scanner RAS
     bool writesBesa = false;     ///< head.sfp: landmarks, electrodes and the skin's points
 };
 
-/// Files of a model with electrodes: BIDS, ASA, BESA, FIFF, and OpenMEEG's (three numbers a line).
-inline constexpr const char* kElectrodesTsv = "electrodes.tsv";
-inline constexpr const char* kElectrodesJson = "coordsystem.json";
-inline constexpr const char* kElectrodesElc = "electrodes.elc";
-inline constexpr const char* kElectrodesSfp = "electrodes.sfp";
-inline constexpr const char* kElectrodesFif = "electrodes-dig.fif";
-inline constexpr const char* kElectrodesTxt = "electrodes.txt";
-inline constexpr const char* kBesaFile = "head.sfp";
-/// Files of a model with sources: a line "x y z ox oy oz" a dipole, and MNE's source space.
-inline constexpr const char* kDipolesTxt = "dipoles.txt";
-inline constexpr const char* kSourcesFif = "sources-src.fif";
-/// File of a model with landmarks: MNE's head coordinates to those of the .surf and .fif files.
-inline constexpr const char* kHeadToMriFif = "head-mri-trans.fif";
-/// Files of a model with tetrahedra, in BemFileOptions::frame, mm.
-inline constexpr const char* kMsh22File = "head.msh";
-inline constexpr const char* kMsh41File = "head-4.1.msh";
-inline constexpr const char* kVtuFile = "head.vtu";
-inline constexpr const char* kDgfFile = "head.dgf";
-inline constexpr const char* kTissueConductivitiesFile = "head.cond";
-
+/// MNE's files of surfaces.
 inline constexpr const char* kFiffModel = "bem.fif";
 inline constexpr const char* kFiffDenseHead = "head-dense.fif";
 inline constexpr const char* kFiffSparseHead = "head-sparse.fif";
-inline constexpr const char* kFieldTripFile = "headmodel.mat";
-
-/// File name of a surface: "csf.stl", "tess_innerskull_bem.mat".
-std::string simNibsName(HeadSurface surface);
-std::string brainstormName(HeadSurface surface);
 
 /// Every name that a model's folder may hold.
 std::vector<std::string> bemFileNames();
@@ -70,10 +46,9 @@ std::string bemFileName(HeadSurface surface, const char* extension);
 void writeBemFiles(const BemModel& model, const BemFileOptions& options, const std::string& maker,
                    const std::function<std::filesystem::path(const std::string& name)>& place);
 
-/// Reads the model's files back from `folder` and asks them once more what checkModel() asks:
-/// rounding to what a format can hold must not break a promise, and every file must lead back to
-/// the surfaces. What is not kept becomes a finding.
-/// \throws FileError  OpenMEEG's files break a rule of its readers
+/// Reads the files back from `folder` and compares them with what should be in them; surfaces are
+/// checked as checkModel() checks them, so that no rounding breaks a promise. Every format becomes
+/// a check, and what it does not keep a finding.
 void checkBemFiles(const std::filesystem::path& folder, const BemFileOptions& options,
                    BemModel& model);
 

@@ -50,6 +50,11 @@ void writeFiffSources(std::span<const FiffSources> sources, const std::filesyste
 /// \param metres  its offset is in metres \throws FileError  the file can't be written
 void writeFiffHeadToMri(const AffineTransform& metres, const std::filesystem::path& path);
 
+/// Reads back files of these two. Of grids the normals, which mean nothing, too.
+/// \throws FileError  "<file>: what is wrong; what to do"
+std::vector<FiffSources> readFiffSources(const std::filesystem::path& path);
+AffineTransform readFiffHeadToMri(const std::filesystem::path& path);
+
 /// Reads all surfaces of a file.
 /// \throws FileError  "<file>: what is wrong; what to do"; also where there is no surface, or one
 ///                    is not in MRI coordinates, or a triangle names a point that is not there

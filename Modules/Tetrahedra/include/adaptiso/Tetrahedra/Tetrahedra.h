@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adaptiso/Core/Geometry.h"
@@ -83,6 +84,10 @@ void writeVtu(const TetrahedralMesh& mesh, const std::filesystem::path& path);
 /// for a place in a list of conductivities.
 void writeDgf(const TetrahedralMesh& mesh, std::span<const TetrahedraRegion> regions,
               const std::filesystem::path& path);
+
+/// Reads back what these write, recognised by its content. Labels of a .dgf are places of regions;
+/// triangles are left out. \throws FileError  "<name>: what is wrong"
+TetrahedralMesh decodeTetrahedra(std::string_view bytes, std::string_view name);
 
 /// Positive where d lies on the side of a, b, c from which these are seen clockwise.
 inline double volumeOf(const TetrahedralMesh& mesh, const std::array<VertexId, 4>& t) {
