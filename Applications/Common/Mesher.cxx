@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <vector>
 
 #include "Common/ChildProcess.h"
@@ -18,35 +19,6 @@ namespace fs = std::filesystem;
 std::string bytesOf(const fs::path& path) {
     std::ifstream stream(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-void run(const std::string& mesher, const std::vector<std::string>& arguments,
-         const ScratchFolder& folder, const char* result) {
-    const ChildResult done = runChild(mesher, arguments, folder.path());
-    std::error_code error;
-    if (done.isGood() && fs::file_size(folder.path() / result, error) > 0 && !error) return;
-    throw FileError(mesher + ": made no tetrahedra (" + done.reason() +
-                    "); try another element size, or the other mesher");
-}
-
-TetrahedralMesh byTetgen(const MesherInput& input, double elementMm) {
-    ScratchFolder folder;
-    writeText(folder.place("head.poly"), tetgenInput(input, elementMm));
-    const fs::path nodes = folder.place("head.1.node"), elements = folder.place("head.1.ele");
-    for (const char* name : {"head.1.face", "head.1.edge", "head.1.smesh"}) folder.place(name);
-    // radius by shortest edge 1.4 and dihedral angles of 10 degrees where the walls allow them
-    run("tetgen", {"-pq1.4/10aAQ", "head.poly"}, folder, "head.1.ele");
-    return decodeTetgen(bytesOf(nodes), bytesOf(elements), "tetgen");
-}
-
-TetrahedralMesh byGmsh(const MesherInput& input, double elementMm) {
-    ScratchFolder folder;
-    writeText(folder.place("walls.msh"), gmshWalls(input));
-    writeText(folder.place("head.geo"), gmshScript(input, "walls.msh", elementMm));
-    const fs::path made = folder.place("head.msh");
-    run("gmsh", {"-3", "-nt", "1", "-format", "msh22", "-o", "head.msh", "head.geo"}, folder,
-        "head.msh");
-    return decodeGmsh(bytesOf(made), "gmsh");
 }
 
 }  // namespace
@@ -74,8 +46,17 @@ void requireMesher(const MesherOptions& options) {
 }
 
 TetrahedralMesh runMesher(const MesherInput& input, const MesherOptions& options) {
-    return options.mesher == "tetgen" ? byTetgen(input, options.elementMm)
-                                      : byGmsh(input, options.elementMm);
+    const MesherRun run = mesherRun(input, options);
+    ScratchFolder folder;
+    for (const auto& [name, text] : run.inputs) writeText(folder.place(name), text);
+    for (const auto* names : {&run.results, &run.others}) {
+        for (const std::string& name : *names) folder.place(name);
+    }
+    const ChildResult done = runChild(run.program, run.arguments, folder.path());
+    std::vector<std::string> results;
+    for (const std::string& name : run.results) results.push_back(bytesOf(folder.path() / name));
+    const bool isMade = done.isGood() && !results.back().empty();
+    return mesherResult(run.program, results, isMade ? std::nullopt : std::optional(done.reason()));
 }
 
 }  // namespace adaptiso

@@ -7,14 +7,6 @@
 
 namespace adaptiso {
 
-/// How spaces between walls are filled with tetrahedra.
-struct MesherOptions {
-    std::string mesher;    ///< "tetgen" or "gmsh"; empty: they are not
-    double elementMm = 5;  ///< longest edge of an equilateral tetrahedron
-
-    bool isAsked() const { return !mesher.empty(); }
-};
-
 /// Adds --tetrahedra and --element-size. \param files  that are written, for --help
 void declareMesherOptions(CLI::App& app, MesherOptions& options, const std::string& files,
                           const char* heading);

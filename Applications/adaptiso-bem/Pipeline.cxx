@@ -4,7 +4,6 @@
 #include <fstream>
 #include <iostream>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "Common/AtomicOutput.h"
@@ -20,6 +19,7 @@
 #include "adaptiso/HeadPipeline/BemReport.h"
 #include "adaptiso/HeadPipeline/BemSources.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
+#include "adaptiso/HeadPipeline/BemTetrahedra.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/PointFiles.h"
 
@@ -251,99 +251,6 @@ void write(BemRun& run) {
                 folder ? &*folder : nullptr);
 }
 
-void addCheck(BemModel& model, const TetrahedraCheck& check) {
-    model.checks.push_back({"tetrahedra: " + check.name, check.isPassed, check.detail, {}});
-    if (check.isPassed) return;
-    const Vec3 place = model.meshes.front().points.front();
-    model.checks.back().pointMm = place;
-    model.findings.push_back({"tetrahedra: " + check.name + ": " + check.detail, place});
-}
-
-/// Notes layers whose elements are longer than asked for: gmsh keeps the surfaces' triangles.
-void noteLongElements(BemModel& model, const TetrahedralMesh& mesh,
-                      std::span<const TetrahedraRegion> regions, double askedMm) {
-    constexpr double kLonger = 1.5, kNotedShare = 0.1;  // irregular ones are a half longer
-    for (const TetrahedraRegion& region : regions) {
-        std::int64_t count = 0, longer = 0;
-        double longestMm = 0;
-        for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
-            if (mesh.labels[n] != region.label) continue;
-            double mm = 0;
-            for (const VertexId a : mesh.tetrahedra[n]) {
-                for (const VertexId b : mesh.tetrahedra[n]) {
-                    mm = std::max(mm, norm(mesh.points[a] - mesh.points[b]));
-                }
-            }
-            ++count;
-            longer += mm > kLonger * askedMm ? 1 : 0;
-            longestMm = std::max(longestMm, mm);
-        }
-        const double share = static_cast<double>(longer) / static_cast<double>(count);
-        if (!(share > kNotedShare)) continue;
-        model.notes.push_back(
-            region.name + ": " + formatRounded(100 * share) +
-            " % of its elements are longer than " + formatShort(kLonger) +
-            " times --element-size " + formatShort(askedMm) + ", up to " +
-            formatLength(longestMm, 1) +
-            " mm, as the triangles of its surfaces are; more --vertices shorten them");
-    }
-}
-
-/// Gives elements in holes of the segmentation's skull (a craniotomy) to the scalp, with a note:
-/// the surfaces are closed there, as boundary elements need. \pre model.segmented
-void openHoles(BemModel& model, TetrahedralMesh& mesh) {
-    const std::size_t count = model.meshes.size();
-    const std::int32_t skull = tissueNumber(HeadSurface::OuterSkull, count);
-    std::vector<std::size_t> elements;
-    std::vector<Vec3> middlesMm;
-    for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
-        if (mesh.labels[n] != skull) continue;
-        Vec3 sum;
-        for (const VertexId v : mesh.tetrahedra[n]) sum += mesh.points[v];
-        elements.push_back(n);
-        middlesMm.push_back(0.25 * sum);
-    }
-    const std::vector<bool> areOpen =
-        areInHoles(middlesMm, model.meshes[count - 3], *model.skull, *model.segmented);
-    std::int64_t opened = 0;
-    double mm3 = 0;
-    for (std::size_t n = 0; n < elements.size(); ++n) {
-        if (!areOpen[n]) continue;
-        mesh.labels[elements[n]] = tissueNumber(HeadSurface::OuterSkin, count);
-        mm3 += volumeOf(mesh, mesh.tetrahedra[elements[n]]);
-        ++opened;
-    }
-    model.segmented.reset();
-    model.notes.push_back("tetrahedra: " + formatCount(opened) + " of the skull's (" +
-                          formatMeasure(mm3 / 1000) +
-                          " cm3), in holes of the segmentation's skull, are scalp");
-}
-
-/// Fills the model's layers with tetrahedra by the mesher, run as a program (stage "tetrahedra"),
-/// and checks them; a failed check becomes a finding. \pre run.model.hasModel()
-/// \throws FileError  the mesher is missing, fails, or writes an unreadable file
-void makeTetrahedra(BemRun& run, const BemHooks& hooks) {
-    BemModel& model = run.model;
-    hooks.stage("tetrahedra", [&] {
-        const std::vector<TetrahedraRegion> regions = headRegions(model.meshes);
-        BemTetrahedra made;
-        made.mesher = run.options.tetrahedra.mesher;
-        made.mesh = runMesher(headMesherInput(model.meshes), run.options.tetrahedra);
-        takeRegions(made.mesh, regions);
-        made.report = checkTetrahedra(made.mesh, regions);
-        model.notes.push_back(describeTetrahedra(made.mesh, made.report, made.mesher));
-        noteLongElements(model, made.mesh, regions, run.options.tetrahedra.elementMm);
-        for (const TetrahedraCheck& check : judgeTetrahedra(made.report, regions)) {
-            addCheck(model, check);
-        }
-        if (model.segmented) {
-            openHoles(model, made.mesh);
-            made.report = checkTetrahedra(made.mesh, regions);
-        }
-        model.tetrahedra = std::move(made);
-    });
-}
-
 }  // namespace
 
 int runBem(const BemOptions& options) {
@@ -368,7 +275,12 @@ int runBem(const BemOptions& options) {
         naming(options.sources.empty() ? "--source-grid" : "--sources",
                [&] { placeSources(run.model, hooks); });
     }
-    if (run.model.hasModel() && options.tetrahedra.isAsked()) makeTetrahedra(run, hooks);
+    if (run.model.hasModel() && options.tetrahedra.isAsked()) {
+        run.stage("tetrahedra", [&] {
+            takeTetrahedra(runMesher(headMesherInput(run.model.meshes), options.tetrahedra),
+                           options.tetrahedra, run.model);
+        });
+    }
     run.takeWarnings();
     write(run);
     return run.end(options.isDryRun ? "all is done" : options.output.string() + " is written");

@@ -3,8 +3,11 @@
 import copy
 import functools
 import json
+import os
 import pickle
+import shutil
 import unittest
+import unittest.mock
 
 import adaptiso
 import numpy as np
@@ -235,6 +238,39 @@ FOUR = {"brain": [1], "csf": [2], "skull": [3], "scalp": [4]}
 
 def four_spheres():
     return spheres((1, 2, 3, 4), (52, 60, 66, 72))
+
+
+class Tetrahedra(InFolder):
+    image, compare = Bytes.image, Bytes.compare
+
+    @needs("nibabel")
+    def test_are_the_program_s(self):
+        path = self.image("seg.nii", spheres())
+        named = ["--tissue", "brain=1", "--tissue", "skull=2", "--tissue", "scalp=3"]
+        for mesher in filter(shutil.which, ("tetgen", "gmsh")):
+            with self.subTest(mesher):
+                model = adaptiso.bem(labels=str(path), tissues=TISSUES, tetrahedra=mesher, element_size=12, **QUICK)
+                layers = model.report["tetrahedra"]["layers"]
+                self.assertEqual([layer["tissue"] for layer in layers], ["brain", "skull", "scalp"])
+                self.assertIn("tetrahedra", model.report["seconds"])
+                self.compare(["--labels", path, *named, *ARGUMENTS, "--tetrahedra", mesher, "--element-size", 12], model)
+
+    def test_a_mesher_that_is_missing_or_fails_is_said(self):
+        def bem(**options):
+            return adaptiso.bem(labels=spheres(), tissues=TISSUES, affine=affine(), **QUICK, **options)
+        for options, pattern in (({"tetrahedra": "netgen"}, "tetrahedra 'netgen': must be"),
+                                 ({"element_size": 0.1}, "element_size 0.1: must be a number from 0.5 to 50, in mm")):
+            with self.assertRaisesRegex(adaptiso.Error, pattern):
+                bem(**options)
+        tools = self.folder / "tools"
+        tools.mkdir()
+        with unittest.mock.patch.dict(os.environ, PATH=str(tools)):
+            with self.assertRaisesRegex(adaptiso.Error, "tetrahedra tetgen: tetgen is not installed"):
+                bem(tetrahedra="tetgen")
+            (tools / "tetgen").write_text("#!/bin/sh\nexit 3\n")
+            (tools / "tetgen").chmod(0o755)
+            with self.assertRaisesRegex(adaptiso.Error, r"tetgen: made no tetrahedra \(exit code 3\)"):
+                bem(tetrahedra="tetgen")
 
 
 class FourLayers(InFolder):

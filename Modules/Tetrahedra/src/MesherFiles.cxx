@@ -285,6 +285,32 @@ TetrahedralMesh decodeGmsh(std::string_view bytes, std::string_view name) {
     return mesh;
 }
 
+MesherRun mesherRun(const MesherInput& input, const MesherOptions& options) {
+    if (options.mesher == "tetgen") {
+        // radius by shortest edge 1.4 and dihedral angles of 10 degrees where the walls allow them
+        return {"tetgen",
+                {"-pq1.4/10aAQ", "head.poly"},
+                {{"head.poly", tetgenInput(input, options.elementMm)}},
+                {"head.1.node", "head.1.ele"},
+                {"head.1.face", "head.1.edge", "head.1.smesh"}};
+    }
+    return {"gmsh",
+            {"-3", "-nt", "1", "-format", "msh22", "-o", "head.msh", "head.geo"},
+            {{"walls.msh", gmshWalls(input)},
+             {"head.geo", gmshScript(input, "walls.msh", options.elementMm)}},
+            {"head.msh"}};
+}
+
+TetrahedralMesh mesherResult(const std::string& mesher, std::span<const std::string> results,
+                             const std::optional<std::string>& reason) {
+    if (reason || results.back().empty()) {
+        throw FileError(mesher + ": made no tetrahedra (" + reason.value_or("no file") +
+                        "); try another element size, or the other mesher");
+    }
+    return results.size() == 2 ? decodeTetgen(results[0], results[1], mesher)
+                               : decodeGmsh(results[0], mesher);
+}
+
 namespace {
 
 /// Of lists of coordinates, corners and labels.

@@ -7,6 +7,11 @@ import json
 import logging
 import math
 import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -31,6 +36,7 @@ logger = logging.getLogger("adaptiso")
 PRESETS = tuple(_adaptiso.tissue_presets())
 TISSUES = ("brain", "csf", "skull", "scalp")
 MONTAGES = ("10-20", "10-10", "10-05")
+MESHERS = ("tetgen", "gmsh")
 #: From inside out; models have the last one to three of them, or all.
 SURFACES = ("brain", "inner_skull", "outer_skull", "outer_skin")
 
@@ -294,7 +300,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         electrodes: Union[Mapping[str, Point], Any] = None, electrodes_in: Optional[str] = None,
         montage: Optional[str] = None, landmarks: Union[Mapping[str, Point], str, None] = None,
         sources: Optional[Sequence[Any]] = None, source_count: Optional[int] = None,
-        source_grid: Optional[float] = None, head_shape: bool = False, threads: int = 0,
+        source_grid: Optional[float] = None, head_shape: bool = False,
+        tetrahedra: Optional[str] = None, element_size: float = 5, threads: int = 0,
         progress: Optional[Progress] = None, **numbers: Unpack[BemOptions]) -> HeadModel:
     """Make the nested surfaces of a head model: inner skull, outer skull, outer skin, and with four
     layers the brain; electrodes on the skin.
@@ -376,6 +383,12 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         Instead of `sources`: dipoles along x, y and z at the points of a grid, mm apart, 1 to 50.
     head_shape : bool
         Keep the skin alone as well, as finely as it was found, for ``save(folder, fif=True)``.
+    tetrahedra : {"tetgen", "gmsh"}, optional
+        Fill the layers with tetrahedra by this program, which must be installed: ``report["tetrahedra"]``
+        measures them, and `save` writes head.msh, head-4.1.msh, head.vtu, head.dgf and head.cond.
+    element_size : float
+        With `tetrahedra`: longest edge of an equilateral one, mm, 0.5 to 50; at the surfaces they are as
+        small as the triangles.
     threads, progress
         As for `surface`.
 
@@ -434,6 +447,11 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         **checked("bem", numbers),
         **_electrodes(electrodes, electrodes_in, montage, landmarks),
     }
+    mesher = None if tetrahedra is None else word("tetrahedra", tetrahedra, MESHERS)
+    element_mm = number("element_size", element_size, "a number from 0.5 to 50, in mm",
+                        lambda mm: 0.5 <= mm <= 50)
+    if mesher and not shutil.which(mesher):
+        raise Error(f"tetrahedra {mesher}: {mesher} is not installed; on Debian: apt install {mesher}")
     given_threads, callback = checked_threads(threads), checked_progress(progress)
     named = _tissues(tissues)
     _adaptiso.check_bem(list(given), named, options,
@@ -444,12 +462,29 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         for image in (*source.images, *source.masks.values()):
             meanwhile.enter_context(read_only(image.user))
         data = _adaptiso.make_bem({**source.as_dict(), **named}, options, given_threads, callback)
+    if mesher and data.has_model:
+        _fill(data, mesher, element_mm)
     for warning in data.warnings[len(source.warnings):]:
         logger.warning("bem: %s", warning)
     model = HeadModel(data, given_threads)
     if not data.has_model:
         raise NoModel(f"no model: {data.failure}", model)
     return model
+
+
+def _fill(data: _adaptiso.HeadModelData, mesher: str, element_mm: float) -> None:
+    """Fills a model's layers with tetrahedra, by a program in a folder of its own. \\raises Error"""
+    begin = time.monotonic()
+    program, arguments, inputs, names = data.mesher_run(mesher, element_mm)
+    with tempfile.TemporaryDirectory(prefix="adaptiso-") as folder:
+        for name, text in inputs:
+            pathlib.Path(folder, name).write_text(text, encoding="ascii")
+        done = subprocess.run([program, *arguments], cwd=folder, stdin=subprocess.DEVNULL,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+        made = [pathlib.Path(folder, name) for name in names]
+        results = [path.read_bytes() if path.is_file() else b"" for path in made]
+    reason = f"exit code {done.returncode}" if done.returncode else None
+    data.take_tetrahedra(mesher, element_mm, results, reason, time.monotonic() - begin)
 
 
 def _source(given: Dict[str, Any], input_coordinates: Any, affine: Any) -> _Source:

@@ -24,6 +24,7 @@
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/HeadModel/Landmarks.h"
+#include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
 #include "adaptiso/HeadPipeline/BemFiles.h"
 #include "adaptiso/HeadPipeline/BemJson.h"
@@ -32,6 +33,7 @@
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/BemSources.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
+#include "adaptiso/HeadPipeline/BemTetrahedra.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/PointFiles.h"
 #include "adaptiso/Report/Page.h"
@@ -82,6 +84,15 @@ public:
     /// \throws FileError     the folder can't be written, or may not be replaced
     void write(const std::filesystem::path& target, const BemFileOptions& options,
                bool mayReplace) const;
+
+    /// The run of a mesher that fills the layers. \pre there is a model
+    MesherRun mesherRun(const MesherOptions& options) const {
+        return adaptiso::mesherRun(headMesherInput(model_.meshes), options);
+    }
+
+    /// Takes what the run made.
+    void takeTetrahedra(const MesherOptions& options, const std::vector<std::string>& results,
+                        const std::optional<std::string>& reason, double seconds);
 
     /// The page of adaptiso-bem's --report.
     std::string page(bool leavesOutFaces) const;
@@ -346,6 +357,14 @@ void HeadModelData::write(const fs::path& target, const BemFileOptions& options,
     folder.commit();
 }
 
+void HeadModelData::takeTetrahedra(const MesherOptions& options,
+                                   const std::vector<std::string>& results,
+                                   const std::optional<std::string>& reason, double seconds) {
+    adaptiso::takeTetrahedra(mesherResult(options.mesher, results, reason), options, model_);
+    seconds_["tetrahedra"] = seconds;
+    seconds_["total"] = seconds_["total"].get<double>() + seconds;
+}
+
 std::string HeadModelData::page(bool leavesOutFaces) const {
     Report report = bemReport(model_, {});
     report.program = kProgramName;
@@ -551,6 +570,25 @@ void declareHeadModels(py::module_& module) {
                 runUnlocked(0, [&] { self.write(folder, files, mayReplace); });
             },
             py::arg("folder"), py::arg("options"), py::arg("replace"))
+        .def(
+            "mesher_run",
+            [](const HeadModelData& self, const std::string& mesher, double elementMm) {
+                const MesherRun run = self.mesherRun({mesher, elementMm});
+                return py::make_tuple(run.program, run.arguments, run.inputs, run.results);
+            },
+            py::arg("mesher"), py::arg("element_size"))
+        .def(
+            "take_tetrahedra",
+            [](HeadModelData& self, const std::string& mesher, double elementMm,
+               const std::vector<py::bytes>& results, const std::optional<std::string>& reason,
+               double seconds) {
+                const std::vector<std::string> bytes(results.begin(), results.end());
+                runUnlocked(0, [&] {
+                    self.takeTetrahedra({mesher, elementMm}, bytes, reason, seconds);
+                });
+            },
+            py::arg("mesher"), py::arg("element_size"), py::arg("results"), py::arg("reason"),
+            py::arg("seconds"))
         .def("page", &HeadModelData::page, py::arg("deface"));
     module.def(
         "make_bem",

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adaptiso/Core/AabbTree.h"
@@ -11,6 +13,14 @@
 #include "adaptiso/Tetrahedra/Tetrahedra.h"
 
 namespace adaptiso {
+
+/// How spaces between walls are filled with tetrahedra.
+struct MesherOptions {
+    std::string mesher;    ///< "tetgen" or "gmsh"; empty: they are not
+    double elementMm = 5;  ///< longest edge of an equilateral tetrahedron
+
+    bool isAsked() const { return !mesher.empty(); }
+};
 
 /// A space to fill: all of a region that hangs together.
 struct MesherVolume {
@@ -33,6 +43,22 @@ struct MesherInput {
 /// \throws InvalidInput  none has area, or all are touched by others
 Vec3 pointBeside(const TriangleMesh& walls, const AabbTree& tree,
                  std::span<const std::int64_t> triangles, bool outward);
+
+/// A run of a mesher, in a folder of its own.
+struct MesherRun {
+    std::string program;
+    std::vector<std::string> arguments;
+    std::vector<std::pair<std::string, std::string>> inputs;  ///< names of files, and their text
+    std::vector<std::string> results;                         ///< names of files, as read
+    std::vector<std::string> others{};                        ///< that it writes besides
+};
+MesherRun mesherRun(const MesherInput& input, const MesherOptions& options);
+
+/// The mesh in the results of a run, given as bytes in their order; labels are numbers of regions.
+/// \param reason  how the program ended, unless well
+/// \throws FileError  it failed, or wrote what can't be read
+TetrahedralMesh mesherResult(const std::string& mesher, std::span<const std::string> results,
+                             const std::optional<std::string>& reason);
 
 /// tetgen's .poly: the walls as facets, and for each space its point, region and largest element.
 /// \param elementMm  longest edge of an equilateral element
