@@ -87,7 +87,7 @@ std::vector<TriangleMesh> readCortex(BemRun& run, const std::vector<fs::path>& p
 
 HeadBoundaries boundariesFromImages(BemRun& run) {
     const BemOptions& options = run.options;
-    const std::string& source = run.model.source;
+    const BemSource source = run.model.source;
     BoundaryOptions boundaries = options.model.boundaries;
     boundaries.progress = run.progress.callback();
     run.progress.show("read");
@@ -100,13 +100,13 @@ HeadBoundaries boundariesFromImages(BemRun& run) {
         view = read.emplace_back(readImage(path, role, run)).volume.view();
     };
     run.timer.time("read", [&] {
-        std::vector<fs::path> main{source == "t1"       ? options.t1
-                                   : source == "labels" ? options.labels
-                                                        : options.ct};
-        if (source == "probabilities") main = options.probabilities;
+        std::vector<fs::path> main{source == BemSource::T1       ? options.t1
+                                   : source == BemSource::Labels ? options.labels
+                                                                 : options.ct};
+        if (source == BemSource::Probabilities) main = options.probabilities;
         for (const fs::path& path : main) {
             images.main.push_back(
-                read.emplace_back(readMainImage(path, source, run)).volume.view());
+                read.emplace_back(readMainImage(path, toString(source), run)).volume.view());
         }
         readMask(options.brainMask, "brain mask", images.brain.mask);
         readMask(options.aseg, "aseg", images.brain.aseg);

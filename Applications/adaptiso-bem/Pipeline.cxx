@@ -28,12 +28,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string sourceOf(const BemOptions& options) {
-    return !options.t1.empty()              ? "t1"
-           : !options.labels.empty()        ? "labels"
-           : !options.probabilities.empty() ? "probabilities"
-           : !options.ct.empty()            ? "ct"
-                                            : "surfaces";
+BemSource sourceOf(const BemOptions& options) {
+    return !options.t1.empty()              ? BemSource::T1
+           : !options.labels.empty()        ? BemSource::Labels
+           : !options.probabilities.empty() ? BemSource::Probabilities
+           : !options.ct.empty()            ? BemSource::Ct
+                                            : BemSource::Surfaces;
 }
 
 std::vector<fs::path> inputsOf(const BemOptions& options) {
@@ -122,7 +122,7 @@ void checkOutputs(const BemOptions& options) {
 
 /// The first surfaces: extracted from the images (dense), or read and mended.
 std::vector<TriangleMesh> firstSurfaces(BemRun& run, const BemHooks& hooks) {
-    if (run.model.source != "surfaces") {
+    if (run.model.source != BemSource::Surfaces) {
         return extractSurfaces(boundariesFromImages(run), run.model, hooks);
     }
     std::vector<TriangleMesh> surfaces = run.stage("read", [&] { return readSurfaces(run); });

@@ -127,8 +127,8 @@ std::vector<double> depthBelowHullMm(const std::vector<Vec3>& points, double lea
     return depth;
 }
 
-/// A surface as it is asked about.
-struct Asked {
+/// A surface and what is measured of it once.
+struct MeasuredSurface {
     TriangleMesh mesh;
     std::vector<VertexId> used;  ///< vertices that triangles name, ascending
     std::vector<double> edgeMm;  ///< by vertex: mean of its edges; 0 where not used
@@ -137,7 +137,8 @@ struct Asked {
     BoundingBox box;                  ///< of the used vertices
     bool isOfHeadSize = false;
 
-    explicit Asked(const TriangleMesh& given) : mesh(finiteOf(given)), edgeMm(given.points.size()) {
+    explicit MeasuredSurface(const TriangleMesh& given)
+        : mesh(finiteOf(given)), edgeMm(given.points.size()) {
         std::vector<int> count(mesh.points.size());
         for (const Triangle& t : mesh.triangles) {
             areaMm2 += areaOf(mesh, t);
@@ -169,29 +170,30 @@ struct Asked {
     }
 };
 
-class Questions {
+/// Judges nested or single surfaces and collects the notes.
+class Judge {
 public:
-    Questions(const std::vector<Asked>& surfaces, const PlausibilityOptions& options)
+    Judge(const std::vector<MeasuredSurface>& surfaces, const PlausibilityOptions& options)
         : surfaces_(surfaces),
           options_(options),
           usual_(options.usual),
           innerSkull_(options.areHeadLayers && surfaces.size() == kHeadSurfaceCount ? 1 : 0) {}
 
-    std::vector<HeadNote> ask() && {
+    std::vector<HeadNote> judged() && {
         for (std::size_t n = 0; n < surfaces_.size(); ++n) {
-            const Asked& surface = surfaces_[n];
+            const MeasuredSurface& surface = surfaces_[n];
             if (surface.used.empty() || !surface.isOfHeadSize) continue;
-            if (n == innerSkull_ && options_.areNested) askNecks();
-            askFlat(n);
-            askProportion(n);
-            if (n == innerSkull_ && options_.areHeadLayers && surface.volumeMm3) askVolume();
-            if (n == innerSkull_ && options_.areHeadLayers) askDents();
+            if (n == innerSkull_ && options_.areNested) judgeNecks();
+            judgeFlat(n);
+            judgeProportion(n);
+            if (n == innerSkull_ && options_.areHeadLayers && surface.volumeMm3) judgeVolume();
+            if (n == innerSkull_ && options_.areHeadLayers) judgeDents();
         }
         for (std::size_t n = 0; options_.areNested && n + 1 < surfaces_.size(); ++n) {
             if (surfaces_[n].used.empty() || surfaces_[n + 1].used.empty()) continue;
             if (!surfaces_[n].isOfHeadSize || !surfaces_[n + 1].isOfHeadSize) continue;
-            askLayer(n);
-            askVertexCounts(n);
+            judgeLayer(n);
+            judgeVertexCounts(n);
         }
         return std::move(notes_);
     }
@@ -203,8 +205,8 @@ private:
         return notes_.back();
     }
 
-    void askNecks() {
-        const Asked& surface = surfaces_[innerSkull_];
+    void judgeNecks() {
+        const MeasuredSurface& surface = surfaces_[innerSkull_];
         if (!surface.volumeMm3) return;
         // room for the closing, and no voxel of the solid at the grid's border
         const double room = kClosingMm + 4;
@@ -244,7 +246,8 @@ private:
     };
 
     /// The part of a surface within `reachMm` of a plane, in triangles along it to 10 degrees.
-    static Flat onPlane(const Asked& surface, const Vec3& normal, double levelMm, double reachMm) {
+    static Flat onPlane(const MeasuredSurface& surface, const Vec3& normal, double levelMm,
+                        double reachMm) {
         Flat flat;
         std::vector<bool> isOn(surface.mesh.points.size());
         for (const Triangle& t : surface.mesh.triangles) {
@@ -269,7 +272,7 @@ private:
     }
 
     /// The image's six faces. Smoothing and fitting leave a cut within about a voxel of them.
-    std::vector<Flat> onFaces(const Asked& surface) const {
+    std::vector<Flat> onFaces(const MeasuredSurface& surface) const {
         std::vector<Flat> flats;
         const ImageGeometry& image = *options_.image;
         for (int a = 0; a < 3; ++a) {
@@ -304,7 +307,7 @@ private:
     }
 
     /// Planes across the axes: those at the ends of the bounding box, where a cut by an image lies.
-    static std::vector<Flat> onEnds(const Asked& surface) {
+    static std::vector<Flat> onEnds(const MeasuredSurface& surface) {
         constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
         constexpr double kReachMm = 0.5;
         std::vector<Flat> flats;
@@ -337,8 +340,8 @@ private:
                });
     }
 
-    void askFlat(std::size_t n) {
-        const Asked& surface = surfaces_[n];
+    void judgeFlat(std::size_t n) {
+        const MeasuredSurface& surface = surfaces_[n];
         std::vector<Flat> flats = options_.image ? onFaces(surface) : onEnds(surface);
         std::erase_if(flats, [&](const Flat& flat) {
             return flat.areaMm2 < UsualHead::kFlatAreaShare * surface.areaMm2;
@@ -359,8 +362,8 @@ private:
     }
 
     /// A vertex that was pulled away has long edges, and those across from it are as ever.
-    void askProportion(std::size_t n) {
-        const Asked& surface = surfaces_[n];
+    void judgeProportion(std::size_t n) {
+        const MeasuredSurface& surface = surfaces_[n];
         const auto& points = surface.mesh.points;
         std::vector<double> across(points.size());
         std::vector<int> count(points.size());
@@ -401,7 +404,7 @@ private:
         return usual_.isAdult() ? "of adults' " : "usual of " + usual_.whose() + ": ";
     }
 
-    void askVolume() {
+    void judgeVolume() {
         const double cm3 = *surfaces_[innerSkull_].volumeMm3 / 1000;
         const bool isNoted = cm3 < usual_.leastInnerSkullCm3 || cm3 > usual_.mostInnerSkullCm3;
         add("innerSkullVolume", "volume of the inner skull", innerSkull_, isNoted,
@@ -411,9 +414,9 @@ private:
     }
 
     /// The vault is convex. The base is not: its fossae and the foramen magnum are left out.
-    void askDents() {
+    void judgeDents() {
         constexpr double kFromBelow = 0.4;
-        const Asked& surface = surfaces_[innerSkull_];
+        const MeasuredSurface& surface = surfaces_[innerSkull_];
         std::vector<Vec3> points;
         for (const VertexId v : surface.used) points.push_back(surface.mesh.points[v]);
         const double bottom = surface.box.minimum.z;
@@ -432,8 +435,8 @@ private:
     }
 
     /// Thickness of the layer between two neighbours, and edges against it.
-    void askLayer(std::size_t n) {
-        const Asked &inner = surfaces_[n], &outer = surfaces_[n + 1];
+    void judgeLayer(std::size_t n) {
+        const MeasuredSurface &inner = surfaces_[n], &outer = surfaces_[n + 1];
         const AabbTree tree(outer.mesh);
         std::vector<double> gap(inner.used.size());
         findNearestPlaces(
@@ -443,7 +446,7 @@ private:
                 gap[k] = std::sqrt(nearest.squaredDistanceMm2);
             });
         const bool hasAllLayers = surfaces_.size() == innerSkull_ + 3;
-        if (options_.areHeadLayers && hasAllLayers && n >= innerSkull_) askThickness(n, gap);
+        if (options_.areHeadLayers && hasAllLayers && n >= innerSkull_) judgeThickness(n, gap);
 
         std::vector<std::pair<double, VertexId>> coarse;
         for (std::size_t k = 0; k < gap.size(); ++k) {
@@ -462,8 +465,8 @@ private:
         if (isNoted) note.pointsMm.push_back(inner.mesh.points[coarse.front().second]);
     }
 
-    void askThickness(std::size_t n, const std::vector<double>& gap) {
-        const Asked& inner = surfaces_[n];
+    void judgeThickness(std::size_t n, const std::vector<double>& gap) {
+        const MeasuredSurface& inner = surfaces_[n];
         const double middle = (inner.box.minimum.z + inner.box.maximum.z) / 2;
         std::vector<double> upper;
         std::size_t thinnest = 0, thickest = 0;
@@ -514,7 +517,7 @@ private:
         }
     }
 
-    void askVertexCounts(std::size_t n) {
+    void judgeVertexCounts(std::size_t n) {
         const auto a = static_cast<double>(surfaces_[n].used.size());
         const auto b = static_cast<double>(surfaces_[n + 1].used.size());
         const double ratio = std::max(a, b) / std::min(a, b);
@@ -528,7 +531,7 @@ private:
         note.next = n + 1;
     }
 
-    const std::vector<Asked>& surfaces_;
+    const std::vector<MeasuredSurface>& surfaces_;
     const PlausibilityOptions& options_;
     const UsualHead& usual_;
     std::size_t innerSkull_;
@@ -560,9 +563,8 @@ std::string UsualHead::whose() const {
 
 std::vector<HeadNote> judgePlausibility(std::span<const TriangleMesh> surfaces,
                                         const PlausibilityOptions& options) {
-    std::vector<Asked> asked;
-    for (const TriangleMesh& surface : surfaces) asked.emplace_back(surface);
-    return Questions(asked, options).ask();
+    std::vector<MeasuredSurface> measured(surfaces.begin(), surfaces.end());
+    return Judge(measured, options).judged();
 }
 
 }  // namespace adaptiso

@@ -162,7 +162,7 @@ Json bemInputJson(const BemModel& model) {
                          {"role", input.role},
                          {"format", input.format}});
     }
-    return {{"source", model.source},
+    return {{"source", toString(model.source)},
             {"files", files},
             {"image", imageJson(model.image)},
             {"warnings", model.warnings}};

@@ -1,8 +1,15 @@
 #include "adaptiso/HeadPipeline/BemModel.h"
 
+#include <array>
+
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
+
+const char* toString(BemSource source) {
+    constexpr std::array<const char*, 5> kNames{"t1", "labels", "probabilities", "ct", "surfaces"};
+    return kNames[static_cast<std::size_t>(source)];
+}
 
 std::string rasText(const Vec3& lps) {
     return "(" + formatFixed(-lps.x, 1) + ", " + formatFixed(-lps.y, 1) + ", " +

@@ -56,7 +56,7 @@ void tellInputs(const BemModel& model, Report& report) {
 void tellOptions(const BemModel& model, Report& report) {
     const BemModelOptions& options = model.options;
     const BoundaryOptions& head = options.boundaries;
-    std::string triangles = model.source == "surfaces"
+    std::string triangles = model.source == BemSource::Surfaces
                                 ? "as the surfaces came, where they could stay"
                             : head.withBrain ? "by the layers' thickness, 10,000 vertices at most"
                                              : "2,562 vertices a surface (default)";
@@ -73,7 +73,7 @@ void tellOptions(const BemModel& model, Report& report) {
         triangles = "edges of " + formatNumber(options.edgeLengthMm->minimumMm) + " to " +
                     formatNumber(options.edgeLengthMm->maximumMm) + " mm";
     }
-    report.options = {{"Made from", model.source}, {"Triangles", triangles}};
+    report.options = {{"Made from", toString(model.source)}, {"Triangles", triangles}};
     if (options.surfaceCount() > 1) {
         report.options.push_back(
             {"Skull, scalp at least",
@@ -223,7 +223,7 @@ Report bemReport(const BemModel& model,
         }
         report.surfaces.back().isWithinSkull =
             headSurface(n, model.meshes.size()) <= HeadSurface::InnerSkull &&
-            model.source != "surfaces";
+            model.source != BemSource::Surfaces;
     }
     if (!model.seenMm.empty() && model.hasModel()) {
         report.notes.push_back(

@@ -279,16 +279,23 @@ std::string bemFault(const BemModelOptions& options, const BemRequest& request,
     return fault ? named(*fault, naming) : "";
 }
 
-HeadBoundaries findBoundaries(const std::string& source, const BemImages& images,
+HeadBoundaries findBoundaries(BemSource source, const BemImages& images,
                               const BoundaryOptions& options, const BemNaming& naming) {
     try {
-        if (source == "t1") return boundariesFromT1(images.main.front(), images.brain, options);
-        if (source == "labels") {
-            return boundariesFromLabels(images.main.front(), images.tissues, options,
-                                        images.headMask);
+        switch (source) {
+            case BemSource::T1:
+                return boundariesFromT1(images.main.front(), images.brain, options);
+            case BemSource::Labels:
+                return boundariesFromLabels(images.main.front(), images.tissues, options,
+                                            images.headMask);
+            case BemSource::Probabilities:
+                return boundariesFromProbabilities(images.main, options);
+            case BemSource::Ct:
+                return boundariesFromCt(images.main.front(), options);
+            case BemSource::Surfaces:
+                break;
         }
-        if (source == "probabilities") return boundariesFromProbabilities(images.main, options);
-        return boundariesFromCt(images.main.front(), options);
+        throw InternalError("findBoundaries: surfaces are no image");
     } catch (const SourceError& error) {
         const char* name = "pial";
         if (error.source() == BoundarySource::Lesion) name = "lesion";
@@ -298,7 +305,7 @@ HeadBoundaries findBoundaries(const std::string& source, const BemImages& images
         }
         throw InvalidInput(naming(name) + ": " + error.what());
     } catch (const InvalidInput& error) {
-        throw InvalidInput(naming(source) + ": " + error.what());
+        throw InvalidInput(naming(toString(source)) + ": " + error.what());
     }
 }
 

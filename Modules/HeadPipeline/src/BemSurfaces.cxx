@@ -38,7 +38,7 @@ RemeshOptions remeshOptions(const BemModel& model, const std::vector<TriangleMes
     const BemModelOptions& options = model.options;
     RemeshOptions remesh;
     // what is left of the voxels' stairs after smoothing; ready surfaces are taken at their word
-    if (model.source != "surfaces") remesh.fitMm = kFitMm;
+    if (model.source != BemSource::Surfaces) remesh.fitMm = kFitMm;
     remesh.edgeLengthMm = options.edgeLengthMm;
     if (choosesVertices(model)) remesh.edgeLengthMm = kFourLayerEdgesMm;
     const std::int64_t usual = model.surfaces[n].ownVertices.value_or(kDefaultVertices);
@@ -188,9 +188,9 @@ void tellMoves(BemModel& model) {
     for (std::size_t n = 0; n < model.meshes.size(); ++n) {
         const double mm = model.surfaces[n].move.maximumMm;
         const std::string name = bemSurfaceName(n, model.meshes.size());
-        if (model.source == "surfaces" && mm > kGivenMm) {
+        if (model.source == BemSource::Surfaces && mm > kGivenMm) {
             model.warnings.push_back({"surface-moved", name + ": " + moveText(n, model)});
-        } else if (model.source != "surfaces" && mm > kFoundMm) {
+        } else if (model.source != BemSource::Surfaces && mm > kFoundMm) {
             model.notes.push_back(name + ": " + moveText(n, model));
         }
     }

@@ -47,8 +47,8 @@ struct HeadSources {
     using Volumes = std::vector<std::shared_ptr<ArrayVolume>>;
     using Meshes = std::vector<std::shared_ptr<MeshData>>;
 
-    std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
-    Volumes images;      ///< with surfaces: the one they belong to
+    BemSource source = BemSource::T1;
+    Volumes images;  ///< with surfaces: the one they belong to
     std::map<std::string, std::shared_ptr<ArrayVolume>> masks;  ///< by argument: "brain_mask"
     Meshes pial, cortex;                                        ///< with t1; for sources
     TissueLabels tissues;
@@ -199,7 +199,7 @@ std::vector<TriangleMesh> readyMeshes(const HeadSources& sources, BemModel& mode
 /// The sources' surfaces, dense or as given.
 std::vector<TriangleMesh> firstSurfaces(const HeadSources& sources, BemModel& model,
                                         const BemHooks& hooks) {
-    if (sources.source != "surfaces") {
+    if (sources.source != BemSource::Surfaces) {
         BoundaryOptions boundaries = model.options.boundaries;
         boundaries.progress = hooks.progress;
         HeadBoundaries found;
@@ -478,9 +478,18 @@ TissueLabels tissuesOf(const py::dict& source) {
     return {lists["brain"], lists["skull"], lists["scalp"], false, lists["csf"]};
 }
 
+std::vector<std::pair<const char*, BemSource>> namedSources() {
+    std::vector<std::pair<const char*, BemSource>> named;
+    for (const BemSource source : {BemSource::T1, BemSource::Labels, BemSource::Probabilities,
+                                   BemSource::Ct, BemSource::Surfaces}) {
+        named.emplace_back(toString(source), source);
+    }
+    return named;
+}
+
 HeadSources sourcesOf(const py::dict& from) {
     HeadSources sources;
-    sources.source = take<std::string>(from, "kind");
+    sources.source = choose<BemSource>("kind", take<std::string>(from, "kind"), namedSources());
     sources.images = take<HeadSources::Volumes>(from, "images");
     sources.masks = take<std::map<std::string, std::shared_ptr<ArrayVolume>>>(from, "masks");
     sources.pial = take<HeadSources::Meshes>(from, "pial");

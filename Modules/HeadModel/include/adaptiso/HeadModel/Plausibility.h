@@ -64,11 +64,11 @@ struct UsualHead {
     static constexpr double kMostVertexRatio = 3;  ///< between neighbours
 };
 
-/// One question about what is usual, and the answer.
+/// A property of a head model, and whether it is usual.
 struct HeadNote {
     std::string_view key;             ///< "necks"
     std::string_view name;            ///< for people: "no narrow neck"
-    std::size_t surface = 0;          ///< number of the surface asked about
+    std::size_t surface = 0;          ///< number of the surface
     std::optional<std::size_t> next;  ///< and of its neighbour, where it is about both
     bool isNoted = false;             ///< unusual: worth a look
     std::string finding;              ///< the value measured, and its usual range
@@ -86,13 +86,13 @@ struct PlausibilityOptions {
     std::optional<ImageGeometry> image;
 };
 
-/// Asks what is usual of a head model of options.usual: no necks (the innermost, when nested), not
-/// cut flat, edges in proportion (each); volume and dents of the inner skull, thickness of skull
-/// and scalp (head layers, nested), edges against the gap and numbers of vertices (nested
+/// Judges what is usual of a head model of options.usual: no necks (the innermost, when nested),
+/// not cut flat, edges in proportion (each); volume and dents of the inner skull, thickness of
+/// skull and scalp (head layers, nested), edges against the gap and numbers of vertices (nested
 /// neighbours).
 ///
 /// Up is +z, as in RAS, LPS and tkRAS. What can't be measured of a surface (it is open, not finite,
-/// not of a head's size) is not asked. Triangles may name points that aren't there.
+/// not of a head's size) is left out. Triangles may name points that aren't there.
 /// \param surfaces  mm
 /// Cost: about a second for a head, most of it for necks (voxels of 1 mm).
 std::vector<HeadNote> judgePlausibility(std::span<const TriangleMesh> surfaces,

@@ -79,6 +79,12 @@ struct BemModelOptions {
     bool hasSkin() const { return surfaceCount() > 1; }
 };
 
+/// What a model is made from.
+enum class BemSource { T1, Labels, Probabilities, Ct, Surfaces };
+
+/// "t1", "labels", "probabilities", "ct", "surfaces": the options of these names.
+const char* toString(BemSource source);
+
 /// An input of the model, for the reports.
 struct BemInput {
     std::string file;    ///< without folders; empty: no file
@@ -157,7 +163,7 @@ struct BemTetrahedra {
 /// keep what is promised of them.
 struct BemModel {
     BemModelOptions options;
-    std::string source;  ///< "t1", "labels", "probabilities", "ct", "surfaces"
+    BemSource source = BemSource::T1;
     std::vector<BemInput> inputs;
     std::vector<Warning> warnings;             ///< doubts about the result
     std::vector<std::string> notes;            ///< guesses, findings, changes

@@ -57,9 +57,9 @@ struct BemImages {
     std::optional<VolumeView> headMask;
 };
 
-/// Finds the head's boundaries. \param source  "t1", "labels", "probabilities" or "ct"
+/// Finds the head's boundaries. \pre the source is no surfaces
 /// \throws InvalidInput  as the functions of HeadBoundaries.h, naming the input
-HeadBoundaries findBoundaries(const std::string& source, const BemImages& images,
+HeadBoundaries findBoundaries(BemSource source, const BemImages& images,
                               const BoundaryOptions& options, const BemNaming& naming);
 
 }  // namespace adaptiso
