@@ -164,19 +164,21 @@ std::vector<Check> makeChecks(const CompareRun& run) {
 }
 
 void warnOfRough(CompareRun& run) {
-    const auto warn = [&](std::int64_t points, const char* why) {
+    const DistanceStatistics& distances = run.distances.combined;
+    const auto warn = [&](std::int64_t points, const std::string& why) {
         if (points == 0) return;
         run.warnings.push_back(
             {"distance-rough",
              formatCount(points) + (points == 1 ? " point lies" : " points lie") + why});
     };
-    const RoughDistances& rough = run.distances.combined.rough;
-    warn(rough.rough,
+    warn(distances.rough.rough,
          " about as far from more than 100 triangles each: distances there may be a hundredth too "
          "large");
-    warn(rough.open,
-         " near more than 500 triangles each: distances there are those of the nearest of 500, and "
-         "may be too large");
+    warn(distances.leftOut + distances.leftOutVertices,
+         " near more than 500 triangles each, more than are measured: " +
+             formatCount(distances.measured()) + " of " + formatCount(distances.samples) +
+             " samples are, which gives the mean to within " + formatShort(distances.meanErrorMm) +
+             " mm (two standard errors); the largest distance may be larger");
 }
 
 /// Limits that fit no surface of this size. \param diagonalMm  of the smaller surface

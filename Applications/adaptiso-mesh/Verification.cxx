@@ -64,7 +64,7 @@ Verification verify(const VolumeView& volume, const SpanSpaceIndex& index, const
     require(maxMm <= (1 + kRounding) * boundMm, "a point lies " + formatNumber(maxMm) +
                                                     " mm from the surface of marching cubes, not " +
                                                     formatNumber(boundMm));
-    return {distance.combined.samples, maxMm};
+    return {distance.combined.measured(), maxMm};
 }
 
 }  // namespace adaptiso::mesher

@@ -119,7 +119,7 @@ void verify(const VerifiedSurface& surface, SimplifyRun& run) {
         fail("a point lies " + formatNumber(maxMm) + " mm from the input, not " +
              formatNumber(boundMm));
     }
-    run.verification = Verification{distance.aToB.samples + distance.bToA.samples, maxMm};
+    run.verification = Verification{distance.combined.measured(), maxMm};
 }
 
 }  // namespace adaptiso::simplifier

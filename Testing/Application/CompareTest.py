@@ -108,6 +108,28 @@ class Truth(CompareTest):
             # rounding of squares of some 100 mm2 is some 1e-14 mm2, its root 1e-7 mm at 0 mm
             self.assertAlmostEqual(distances.GetValue(n), math.sqrt(squared.get()), delta=1e-6)
 
+    def test_of_thousands_that_all_cross_some_samples_are_measured(self):
+        points, triangles = [], []
+        for n in range(2000):
+            a, b = 2 * math.pi * n * 0.618034, math.acos(1 - 2 * ((n * 0.7548777) % 1))
+            u = (math.cos(a) * math.sin(b), math.sin(a) * math.sin(b), math.cos(b))
+            v = (-math.sin(a), math.cos(a), 0)
+            points += [tuple(50 * x for x in u), tuple(50 * x for x in v),
+                       tuple(-50 * (x + y) for x, y in zip(u, v))]
+            triangles.append((3 * n, 3 * n + 1, 3 * n + 2))
+        self.write("a.off", (points, triangles))
+        self.write("b.off", ([(x + 0.1, y, z) for x, y, z in points], triangles))
+        report = self.compare("a.off", "b.off", "--samples", "20000", "--one-sided")
+        both = report["distances"]["combined"]
+        self.assertIn(both["measured"], range(100, 10000))
+        self.assertLessEqual(both["maxMm"], 0.1 + 1e-9)  # the shift: rough distances were of millimetres
+        self.assertGreater(both["meanErrorMm"], 0)
+        self.assertLess(both["meanErrorMm"], both["meanMm"] / 4)
+        warning, = (w for w in report["warnings"] if w["code"] == "distance-rough")
+        self.assertRegex(warning["text"], r"^[\d,]+ points lie near more than 500 triangles each, more than are "
+                                          r"measured: [\d,]+ of 20,000 samples are, which gives the mean to within "
+                                          r"0\.\d+ mm \(two standard errors\); the largest distance may be larger$")
+
 
 class Colored(CompareTest):
     def test_holds_the_surface_and_its_colours(self):

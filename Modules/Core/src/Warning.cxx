@@ -21,7 +21,7 @@ constexpr WarningCode kCodes[] = {
     {"copies-left-out", "copies of files, compressed or exact, were left out"},
     {"count-missed", "the number of triangles asked for was not reached"},
     {"count-unset", "a surface's count is 0 or all ones; all that follow were read", true},
-    {"distance-rough", "some distances may be too large: too many triangles lie as near"},
+    {"distance-rough", "distances are rough or of fewer points: too many triangles lie as near"},
     {"electrodes-left-out", "electrodes have no place in their file (n/a, NaN, empty)", true},
     {"empty-slices",
      "a segmentation's frames have no neighbours; slices without a frame are empty"},

@@ -108,6 +108,7 @@ struct Measurements {
     std::vector<double> deviationsDeg;
     Farthest farthest;
     RoughDistances rough;
+    std::int64_t leftOut = 0, leftOutVertices = 0;
 };
 
 Vec3 triangleNormal(const TriangleMesh& mesh, std::int64_t triangle) {
@@ -124,29 +125,40 @@ void measureSamples(const TriangleMesh& from, const TriangleMesh& to, const Aabb
     const SurfaceSampler sampler(from, samples);
     result.distancesMm.resize(samples);
     result.deviationsDeg.resize(samples);
+    std::vector<StandIn> standIns;
     result.rough += findNearestPlaces(
         to, tree, samples, [&](std::int64_t n) { return sampler.at(n).pointMm; },
         [&](std::int64_t n, const ClosestPoint& nearest) {
             result.distancesMm[n] = std::sqrt(nearest.squaredDistanceMm2);
             result.deviationsDeg[n] = angleDeg(triangleNormal(from, sampler.at(n).triangle),
                                                triangleNormal(to, nearest.triangle));
-        });
+        },
+        true, &standIns);
+    for (const auto& [point, like] : standIns) result.distancesMm[point] = 0;
     const auto largest = std::max_element(result.distancesMm.begin(), result.distancesMm.end());
     result.farthest = {*largest, sampler.at(largest - result.distancesMm.begin()).pointMm};
+    for (const auto& [point, like] : standIns) {
+        result.distancesMm[point] = result.distancesMm[like];
+        result.deviationsDeg[point] = result.deviationsDeg[like];
+    }
+    result.leftOut = std::ssize(standIns);
 }
 
 /// The vertex farthest away; the first of several.
 Farthest farthestVertex(const TriangleMesh& from, const TriangleMesh& to, const AabbTree& tree,
-                        RoughDistances& rough) {
+                        Measurements& result) {
     std::vector<bool> isUsed(from.points.size());
     for (const Triangle& t : from.triangles) {
         for (const VertexId v : t) isUsed[v] = true;
     }
     std::vector<double> squared(from.points.size());
-    rough += findNearestPlaces(
+    std::vector<StandIn> standIns;
+    result.rough += findNearestPlaces(
         to, tree, std::ssize(from.points),
         [&](VertexId v) { return isUsed[v] ? std::optional(from.points[v]) : std::nullopt; },
-        [&](VertexId v, const ClosestPoint& nearest) { squared[v] = nearest.squaredDistanceMm2; });
+        [&](VertexId v, const ClosestPoint& nearest) { squared[v] = nearest.squaredDistanceMm2; },
+        true, &standIns);
+    result.leftOutVertices = std::ssize(standIns);
     const auto farthest = std::max_element(squared.begin(), squared.end());
     return {std::sqrt(*farthest), from.points[farthest - squared.begin()]};
 }
@@ -155,7 +167,7 @@ Measurements measure(const TriangleMesh& from, const TriangleMesh& to, std::int6
     const AabbTree tree(to);
     Measurements result;
     measureSamples(from, to, tree, samples, result);
-    const Farthest vertex = farthestVertex(from, to, tree, result.rough);
+    const Farthest vertex = farthestVertex(from, to, tree, result);
     if (vertex.distanceMm > result.farthest.distanceMm) result.farthest = vertex;
     return result;
 }
@@ -184,6 +196,13 @@ DistanceStatistics summarize(Measurements& measurements) {
     double squares = 0;
     for (const double distance : distances) squares += distance * distance;
     result.rmsMm = std::sqrt(squares / static_cast<double>(distances.size()));
+    result.leftOut = measurements.leftOut;
+    result.leftOutVertices = measurements.leftOutVertices;
+    if (result.leftOut > 0) {
+        const double variance = std::max(
+            0.0, squares / static_cast<double>(distances.size()) - result.meanMm * result.meanMm);
+        result.meanErrorMm = 2 * std::sqrt(variance / static_cast<double>(result.measured()));
+    }
     result.p95Mm = percentile(distances, 0.95);
     result.p99Mm = percentile(distances, 0.99);
     result.rough = measurements.rough;
@@ -199,6 +218,8 @@ void append(Measurements& all, const Measurements& more) {
     all.deviationsDeg.insert(all.deviationsDeg.end(), more.deviationsDeg.begin(),
                              more.deviationsDeg.end());
     all.rough += more.rough;
+    all.leftOut += more.leftOut;
+    all.leftOutVertices += more.leftOutVertices;
     if (more.farthest.distanceMm > all.farthest.distanceMm) all.farthest = more.farthest;
 }
 

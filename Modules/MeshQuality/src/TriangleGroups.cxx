@@ -681,6 +681,7 @@ ClosestPoint TriangleGroups::Boxes::closestPoint(const Vec3& p, const ClosestPoi
     effort.begin();
     if (boxes_.empty()) return best;
     constexpr double kRough = SearchEffort::kRough * SearchEffort::kRough;
+    const double gap = groups_.gap_;
     struct Candidate {
         HalvedLeaves group;
         double squared;
@@ -691,6 +692,7 @@ ClosestPoint TriangleGroups::Boxes::closestPoint(const Vec3& p, const ClosestPoi
     while (depth > 0) {
         const Candidate at = stack[--depth];
         if (at.squared >= best.squaredDistanceMm2) continue;
+        if (best.squaredDistanceMm2 <= gap * gap) break;  // none is known to be nearer
         if (effort.isUsedUp()) {
             if (effort.ends()) break;
             if (at.squared >= kRough * best.squaredDistanceMm2) {

@@ -242,8 +242,9 @@ Json lengthsJson(const DistanceStatistics& distances, double unitMm, const std::
 }
 
 Json deviationJson(const DistanceStatistics& distances, const AffineTransform& toFrame) {
-    Json json{{"samples", distances.samples}};
+    Json json{{"samples", distances.samples}, {"measured", distances.measured()}};
     json.update(lengthsJson(distances, 1, "Mm"));
+    json["meanErrorMm"] = number(distances.meanErrorMm);
     json["maxPointMm"] = vector(toFrame(distances.maxPointMm));
     return json;
 }

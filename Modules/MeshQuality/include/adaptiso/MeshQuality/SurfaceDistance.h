@@ -28,9 +28,16 @@ struct DistanceStatistics {
     double p99Mm = 0;
     double maxMm = 0;      ///< of samples and vertices: never more than the truth, but for `rough`
     RoughDistances rough;  ///< points whose distance may be too large
-    Vec3 maxPointMm;       ///< where, on the surface that is measured from
+    /// Samples for which a measured one stands, where distances to thousands of triangles that
+    /// cross would have to be known: maxMm is that of the measured ones.
+    std::int64_t leftOut = 0;
+    std::int64_t leftOutVertices = 0;   ///< not measured either
+    double meanErrorMm = 0;             ///< two standard errors of meanMm due to that
+    Vec3 maxPointMm;                    ///< where, on the surface that is measured from
     double meanNormalDeviationDeg = 0;  ///< angle between the two surfaces' triangle normals
     double p95NormalDeviationDeg = 0;
+
+    std::int64_t measured() const { return samples - leftOut; }
 };
 
 struct DistanceReport {
