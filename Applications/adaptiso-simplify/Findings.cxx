@@ -72,7 +72,11 @@ void splitDuplicates(const TriangleMesh& mesh, std::vector<Finding>& findings) {
 }  // namespace
 
 std::string Finding::text() const {
-    std::string text = formatCount(count) + " " + what + (isDropped ? ", dropped" : "");
+    if (count == 0) {
+        return what +
+               ": not decided: hundreds of triangles lie near each one, more than are tested";
+    }
+    std::string text = foundText(count, isComplete) + " " + what + (isDropped ? ", dropped" : "");
     if (placeMm) {
         text += count == 1 ? ", at " : ", the first at ";
         text += formatShort(placeMm->x) + ", " + formatShort(placeMm->y) + ", " +
@@ -107,19 +111,16 @@ std::vector<Finding> findTopologyFaults(const TriangleMesh& mesh, const Topology
 }
 
 std::optional<Finding> crossingFinding(const TriangleMesh& mesh,
-                                       const std::vector<std::int64_t>& triangles) {
-    if (triangles.empty()) return std::nullopt;
+                                       const CrossingTriangles& triangles) {
+    if (triangles.isEmpty()) return std::nullopt;
     Finding finding;
     finding.key = "crossingTriangles";
-    finding.count = std::ssize(triangles);
+    finding.count = std::ssize(triangles.found);
+    finding.isComplete = triangles.isComplete();
     finding.what =
         finding.count == 1 ? "triangle that crosses another" : "triangles that cross others";
-    finding.placeMm = middleOf(mesh, triangles.front());
+    if (!triangles.found.empty()) finding.placeMm = middleOf(mesh, triangles.found.front());
     return finding;
-}
-
-std::vector<std::int64_t> findCrossing(const TriangleMesh& mesh) {
-    return crossingTriangles(mesh);
 }
 
 }  // namespace adaptiso::simplifier

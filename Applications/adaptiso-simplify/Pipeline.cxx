@@ -72,7 +72,7 @@ std::vector<PointData> readData(SimplifyRun& run) {
 }
 
 /// Puts what crosses before what is dropped, as it is kept.
-void addCrossing(const TriangleMesh& mesh, const std::vector<std::int64_t>& triangles,
+void addCrossing(const TriangleMesh& mesh, const CrossingTriangles& triangles,
                  std::vector<Finding>& findings) {
     std::optional<Finding> crossing = crossingFinding(mesh, triangles);
     if (!crossing) return;
@@ -87,7 +87,7 @@ void check(const TriangleMesh& mesh, SimplifyRun& run) {
     run.input.topology = checkTopology(mesh);
     run.findings = findTopologyFaults(mesh, run.input.topology);
     if (run.command.requiresSound && isSound(run.findings)) {
-        addCrossing(mesh, findCrossing(mesh), run.findings);
+        addCrossing(mesh, findCrossingTriangles(mesh), run.findings);
     }
 }
 
@@ -141,7 +141,9 @@ Simplified simplifySurface(const TriangleMesh& mesh, SimplifyRun& run) {
     Simplified result = naming(baseName(run.input.file), [&] { return simplify(mesh, options); });
     run.statistics = result.statistics;
     if (!run.command.requiresSound) {
-        addCrossing(mesh, result.statistics.crossingTriangles, run.findings);
+        addCrossing(mesh,
+                    {result.statistics.crossingTriangles, result.statistics.undecidedTriangles},
+                    run.findings);
     }
     return result;
 }

@@ -34,6 +34,7 @@ Json findingsJson(const std::vector<Finding>& findings) {
     for (const Finding& finding : findings) {
         list.push_back({{"what", finding.key},
                         {"count", finding.count},
+                        {"isComplete", finding.isComplete},
                         {"firstMm", finding.placeMm ? vector(*finding.placeMm) : Json(nullptr)},
                         {"dropped", finding.isDropped}});
     }

@@ -17,6 +17,7 @@
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/PointData.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/Report/Report.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
@@ -27,7 +28,8 @@ namespace adaptiso::simplifier {
 struct Finding {
     std::string_view key;         ///< of the report: "borderEdges"
     std::string what;             ///< for people: "open border edge"
-    std::int64_t count = 0;       ///< > 0
+    std::int64_t count = 0;       ///< > 0, or not complete
+    bool isComplete = true;       ///< false: there may be more, findCrossingPairs() says when
     std::optional<Vec3> placeMm;  ///< of the first of them, as the file has it
     bool isDropped = false;       ///< else kept as it is
     bool isFault = true;          ///< the surface is not sound for it
@@ -41,12 +43,9 @@ bool isSound(const std::vector<Finding>& findings);
 /// The faults of a surface's topology.
 std::vector<Finding> findTopologyFaults(const TriangleMesh& mesh, const TopologyReport& topology);
 
-/// Triangles that cross others. \param triangles  their numbers
+/// Triangles that cross others, or may.
 std::optional<Finding> crossingFinding(const TriangleMesh& mesh,
-                                       const std::vector<std::int64_t>& triangles);
-
-/// Numbers of the triangles that cross others, ascending, found by MeshQuality.
-std::vector<std::int64_t> findCrossing(const TriangleMesh& mesh);
+                                       const CrossingTriangles& triangles);
 
 /// A surface as a file has it.
 struct SurfaceSummary {

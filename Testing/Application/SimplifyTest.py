@@ -142,6 +142,31 @@ class Soundness(SimplifyTest):
                     for name in ("two.off", "out.vtp")]
         self.assertLessEqual(crossing[1], crossing[0])
 
+    def test_of_more_crossings_than_are_tested_some_are_counted(self):
+        """Closed needles in all directions, hundreds near each, few of which cross."""
+        points, triangles = [], []
+        for n in range(1200):
+            a, b = 2 * math.pi * n * 0.618034, math.acos(1 - 2 * ((n * 0.7548777) % 1))
+            u = (math.cos(a) * math.sin(b), math.sin(a) * math.sin(b), math.cos(b))
+            v = (-math.sin(a), math.cos(a), 0)
+            w = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+            c = [3 * math.sin(n * k) for k in (1.1, 2.3, 3.7)]
+            points += [tuple(p + x * 60 + y * 1e-3 + z * 1e-3 for p, x, y, z in zip(c, *ends))
+                       for ends in ([[-x for x in u], v, w], [u, v, w], [u, [-x for x in v], w],
+                                    [u, v, [-x for x in w]])]
+            triangles += [tuple(4 * n + k for k in face)
+                          for face in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))]
+        self.path("hay.ply").write_text(ply((points, triangles)))
+        done = self.run_simplify("hay.ply", "--max-error", "1", "--require-sound", "--json", "-", "-o", "out.ply")
+        self.assertEqual(done.returncode, CHECK_FAILED)
+        self.assertRegex(done.stderr, r": more than [\d,]+0 triangles that cross others, the first at [-\d., e]+\n")
+        found, = (f for f in json.loads(done.stdout)["input"]["findings"] if f["what"] == "crossingTriangles")
+        self.assertFalse(found["isComplete"])
+        self.assertIn(found["count"], range(2, len(triangles)))
+        checked = self.check("hay.ply")["surfaces"][0]["selfIntersections"]
+        self.assertFalse(checked["isComplete"])
+        self.assertIn(found["count"], range(2, 2 * checked["pairCount"] + 1))
+
     def test_triangles_without_area_and_doubles_are_dropped_and_counted(self):
         points, triangles = icosphere(10, 2)
         a, b, c = triangles[0]

@@ -116,12 +116,16 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
     statistics.duplicateTriangles = parts.duplicate;
     statistics.borderEdges = std::ssize(parts.borderEdges);
     statistics.nonManifoldVertices = std::move(parts.nonManifold);
-    for (const std::int64_t t : parts.crossing) {
-        statistics.crossingTriangles.push_back(
-            parts.inputTriangle.empty() ? t : std::int64_t{parts.inputTriangle[t]});
-    }
+    const auto asInInput = [&](std::vector<std::int64_t> triangles) {
+        for (std::int64_t& t : triangles) {
+            if (!parts.inputTriangle.empty()) t = parts.inputTriangle[t];
+        }
+        std::ranges::sort(triangles);
+        return triangles;
+    };
+    statistics.crossingTriangles = asInInput(std::move(parts.crossing.found));
+    statistics.undecidedTriangles = asInInput(std::move(parts.crossing.undecided));
     std::ranges::sort(statistics.nonManifoldVertices);
-    std::ranges::sort(statistics.crossingTriangles);
     statistics.errorBoundMm = made.errorBoundMm + parts.movedMm;
     statistics.wantedTriangles = made.wantedTriangles;
     statistics.work = made.work;

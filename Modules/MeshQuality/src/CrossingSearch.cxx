@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -24,7 +25,8 @@ namespace {
 
 constexpr std::size_t kMostNumbers = std::numeric_limits<std::uint32_t>::max();
 
-/// The triangles of a mesh whose corners are finite, by 32-bit numbers.
+/// The triangles of a mesh that may cross others, those with area and finite corners, by 32-bit
+/// numbers.
 struct FiniteTriangles {
     std::vector<TriangleView::Triangle> triangles;
     std::vector<std::int64_t> numbers;  ///< in the mesh
@@ -52,7 +54,9 @@ struct FiniteTriangles {
                                    " names vertex " + std::to_string(v) + " of a mesh with " +
                                    std::to_string(pointCount) + " points");
             }
-            if (!isMeant(n) || !areFinite(cornersOf(mesh, n))) continue;
+            if (!isMeant(n)) continue;
+            const Corners corners = cornersOf(mesh, n);
+            if (!areFinite(corners) || axisWithArea(corners) < 0) continue;
             triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
                                  static_cast<std::uint32_t>(c)});
             numbers.push_back(n);
@@ -79,12 +83,19 @@ std::vector<std::int64_t> joined(const OfPieces& pieces) {
     return all;
 }
 
-/// Those of pairs, and those that are undecided: who keeps crossing triangles keeps them too.
-std::vector<std::int64_t> trianglesOf(const CrossingPairs& crossing) {
-    std::vector<std::int64_t> triangles(crossing.undecided.begin(), crossing.undecided.end());
-    for (const auto& pair : crossing.pairs)
-        triangles.insert(triangles.end(), pair.begin(), pair.end());
-    return joined({std::move(triangles)});
+CrossingTriangles trianglesOf(const CrossingPairs& crossing) {
+    std::vector<std::int64_t> found;
+    for (const auto& pair : crossing.pairs) found.insert(found.end(), pair.begin(), pair.end());
+    CrossingTriangles triangles{joined({std::move(found)}), {}};
+    std::set_difference(crossing.undecided.begin(), crossing.undecided.end(),
+                        triangles.found.begin(), triangles.found.end(),
+                        std::back_inserter(triangles.undecided));
+    return triangles;
+}
+
+/// Who keeps crossing triangles keeps those that are undecided too.
+std::vector<std::int64_t> allOf(const CrossingTriangles& triangles) {
+    return joined({triangles.found, triangles.undecided});
 }
 
 /// Triangles by their cells. Marching cubes makes those of a cell one after the other: nearly
@@ -176,8 +187,10 @@ std::vector<std::int64_t> crossingWithoutCells(const TriangleMesh& mesh,
     });
     const FiniteTriangles near(mesh, [&](std::int64_t t) { return isNear[t] != 0; });
     const auto isFree = [&](std::uint32_t t) { return cells[near.numbers[t]] == kNoCell; };
-    std::vector<std::int64_t> crossing = trianglesOf(findCrossingPairs(
-        near.view(mesh), [&](std::uint32_t a, std::uint32_t b) { return isFree(a) || isFree(b); }));
+    std::vector<std::int64_t> crossing =
+        allOf(trianglesOf(findCrossingPairs(near.view(mesh), [&](std::uint32_t a, std::uint32_t b) {
+            return isFree(a) || isFree(b);
+        })));
     for (std::int64_t& t : crossing) t = near.numbers[t];
     return crossing;
 }
@@ -258,15 +271,20 @@ CrossingPairs findCrossingPairs(const TriangleView& mesh, const IsMet& isAsked) 
     return {std::move(found.pairs), std::move(found.undecided), found.tests};
 }
 
-std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh) {
+CrossingTriangles findCrossingTriangles(const TriangleView& mesh) {
     return trianglesOf(findCrossingPairs(mesh));
 }
 
-std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
+CrossingTriangles findCrossingTriangles(const TriangleMesh& mesh) {
     const FiniteTriangles finite(mesh);
-    std::vector<std::int64_t> crossing = crossingTriangles(finite.view(mesh));
-    for (std::int64_t& t : crossing) t = finite.numbers[t];
+    CrossingTriangles crossing = findCrossingTriangles(finite.view(mesh));
+    for (std::int64_t& t : crossing.found) t = finite.numbers[t];
+    for (std::int64_t& t : crossing.undecided) t = finite.numbers[t];
     return crossing;
+}
+
+std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
+    return allOf(findCrossingTriangles(mesh));
 }
 
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh,

@@ -126,12 +126,16 @@ bool trianglesCross(const Corners& a, const Corners& b) {
     return cross && axisWithArea(a) >= 0 && axisWithArea(b) >= 0;
 }
 
-std::string pairsText(std::int64_t found, bool isComplete) {
-    if (isComplete) return formatCount(found) + (found == 1 ? " pair" : " pairs");
-    if (found <= 1) return "at least " + formatCount(found) + " pair";
+std::string foundText(std::int64_t found, bool isComplete) {
+    if (isComplete) return formatCount(found);
+    if (found <= 1) return "at least " + formatCount(found);
     std::int64_t step = 1;  // two digits tell enough
     while (found - 1 >= 100 * step) step *= 10;
-    return "more than " + formatCount((found - 1) / step * step) + " pairs";
+    return "more than " + formatCount((found - 1) / step * step);
+}
+
+std::string pairsText(std::int64_t found, bool isComplete) {
+    return foundText(found, isComplete) + (found == 1 ? " pair" : " pairs");
 }
 
 std::string crossingText(const SelfIntersections& crossings) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -280,6 +281,37 @@ TEST(Simplify, KeepsWhatIsNoManifoldAndSaysWhere) {
     EXPECT_EQ(turned.statistics.nonManifoldVertices.size(), 3U);
     EXPECT_EQ(checkTopology(turned.mesh).count(TopologyDefect::InconsistentEdge), 3);
     EXPECT_LT(turned.mesh.triangles.size(), 2000U);
+}
+
+// Hundreds of needles lie near each one, and few cross.
+TEST(Simplify, KeepsTrianglesWhoseCrossingsAreNotDecided) {
+    constexpr VertexId kCount = 2500;
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    const auto direction = [&] { return Vec3{normal(random), normal(random), normal(random)}; };
+    TriangleMesh hay;
+    for (VertexId n = 0; n < kCount; ++n) {
+        const Vec3 centre = 3 * direction(), along = direction();
+        const Vec3 tip = centre + 60 / norm(along) * along;
+        hay.points.insert(hay.points.end(), {2 * centre - tip, tip, tip + 1e-3 * direction()});
+        hay.triangles.push_back({3 * n, 3 * n + 1, 3 * n + 2});
+    }
+    const Simplified result = simplify(hay, within(1));
+    const auto &crossing = result.statistics.crossingTriangles,
+               &undecided = result.statistics.undecidedTriangles;
+    EXPECT_FALSE(crossing.empty());
+    EXPECT_GT(undecided.size(), crossing.size());
+    EXPECT_TRUE(std::ranges::is_sorted(undecided));
+    std::vector<std::int64_t> both;
+    std::ranges::set_intersection(crossing, undecided, std::back_inserter(both));
+    EXPECT_TRUE(both.empty());
+    std::ranges::set_union(crossing, undecided, std::back_inserter(both));
+    EXPECT_EQ(both, crossingTriangles(hay));
+    const auto before = trianglesOf(hay, both);
+    std::vector<std::int64_t> all(result.mesh.triangles.size());
+    std::iota(all.begin(), all.end(), 0);
+    const auto after = trianglesOf(result.mesh, all);
+    EXPECT_TRUE(std::ranges::includes(after, before));
 }
 
 TEST(Simplify, KeepsTrianglesThatCrossAndMakesNoOthersCross) {

@@ -50,6 +50,7 @@ def simplify(mesh: Any, faces: Any = None, *, input_coordinates: Optional[str] =
     Mesh
         In the frame of `mesh`. ``error_bound`` is proved against `mesh`. ``report`` has
         ``border_edges``, ``non_manifold_vertices``, ``crossing_triangles``,
+        ``undecided_triangles`` (near too many others to be tested with all),
         ``degenerate_triangles`` and ``duplicate_triangles`` of `mesh` (the last two were dropped),
         ``wanted_triangles``, and ``warnings``: lines with a ``code``, as
         Documentation/Warnings.md lists them.

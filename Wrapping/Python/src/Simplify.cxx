@@ -25,6 +25,7 @@ py::dict toDict(const SimplifyStatistics& statistics) {
     found["border_edges"] = statistics.borderEdges;
     found["non_manifold_vertices"] = statistics.nonManifoldVertices;
     found["crossing_triangles"] = statistics.crossingTriangles;
+    found["undecided_triangles"] = statistics.undecidedTriangles;
     found["wanted_triangles"] = statistics.wantedTriangles;
     return found;
 }

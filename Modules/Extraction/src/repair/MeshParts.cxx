@@ -85,11 +85,11 @@ public:
         if (dropDuplicates()) halfEdges_.assign(parts_.points.size(), parts_.triangles);
 
         halfEdges_.match(twin_);
-        const std::vector<std::int64_t> crossing = crossingTriangles(parts_.view());
+        parts_.crossing = findCrossingTriangles(parts_.view());
         cutEdges();
         cutPoints();
-        keepCrossings(crossing);
-        if (crossing.empty()) freeMemory(parts_.inputTriangle);  // none is asked for
+        keepCrossings();
+        if (parts_.crossing.isEmpty()) freeMemory(parts_.inputTriangle);  // none is asked for
         if (keepsBorders_) {
             for (const std::uint64_t h : parts_.borderEdges) {
                 keep(from(static_cast<std::uint32_t>(h)));
@@ -379,10 +379,11 @@ private:
         parts_.isKept[v] = 1;
     }
 
-    void keepCrossings(const std::vector<std::int64_t>& crossing) {
-        parts_.crossing = crossing;
-        for (const std::int64_t t : crossing) {
-            for (const std::uint32_t v : parts_.triangles[t]) keep(v);
+    void keepCrossings() {
+        for (const auto* const triangles : {&parts_.crossing.found, &parts_.crossing.undecided}) {
+            for (const std::int64_t t : *triangles) {
+                for (const std::uint32_t v : parts_.triangles[t]) keep(v);
+            }
         }
         if (!parts_.isKept.empty()) parts_.isKept.resize(parts_.points.size(), 0);
         if (!parts_.marks.empty()) parts_.marks.resize(parts_.points.size(), Patch::kPlain);

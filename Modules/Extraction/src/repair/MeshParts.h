@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/TriangleTree.h"
 
 namespace adaptiso::detail {
@@ -25,7 +26,7 @@ struct MeshParts {
     std::vector<std::uint8_t> isKept;        ///< of each point: it stays. Empty: none is
     std::vector<std::uint64_t> borderEdges;  ///< half-edges of open borders, not of cuts
     std::vector<VertexId> nonManifold;       ///< points of the input
-    std::vector<std::int64_t> crossing;      ///< triangles that cross others, ascending
+    CrossingTriangles crossing;              ///< kept, undecided ones too
     std::vector<std::uint32_t>
         inputTriangle;  ///< of each triangle. Empty: its own number, or none crosses
     std::int64_t degenerate = 0, duplicate = 0;  ///< triangles that were dropped

@@ -45,7 +45,7 @@ TEST(MeshParts, LeavesASoundMeshAsItIs) {
     }
     EXPECT_EQ(parts.triangles.size(), sphere.triangles.size());
     EXPECT_TRUE(parts.marks.empty() && parts.isKept.empty() && parts.borderEdges.empty());
-    EXPECT_TRUE(parts.nonManifold.empty() && parts.crossing.empty());
+    EXPECT_TRUE(parts.nonManifold.empty() && parts.crossing.isEmpty());
 }
 
 TEST(MeshParts, MovesFarMeshesWithoutLosingABit) {
@@ -79,8 +79,9 @@ TEST(MeshParts, CutsAnEdgeOfThreeTrianglesApart) {
 TEST(MeshParts, KeepsWhatCrosses) {
     const TriangleMesh spheres = bare(crossingSpheres(3));
     const MeshParts parts = takeApart(spheres, false);
-    ASSERT_FALSE(parts.crossing.empty());
-    for (const std::int64_t t : parts.crossing) {
+    ASSERT_FALSE(parts.crossing.found.empty());
+    EXPECT_TRUE(parts.crossing.isComplete());
+    for (const std::int64_t t : parts.crossing.found) {
         for (const std::uint32_t v : parts.triangles[t]) EXPECT_EQ(parts.isKept[v], 1);
     }
 }

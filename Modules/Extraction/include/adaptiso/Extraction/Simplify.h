@@ -36,6 +36,8 @@ struct SimplifyStatistics {
     /// sides, and those that join triangles by themselves alone: kept as they are.
     std::vector<std::int64_t> nonManifoldVertices;
     std::vector<std::int64_t> crossingTriangles;  ///< of the input, that cross others: kept
+    /// Others of the input that lie near too many to be tested with all: kept as well.
+    std::vector<std::int64_t> undecidedTriangles;
     /// The proved bound of the distance between input and result, both ways.
     double errorBoundMm = 0;
     /// The count that maxTriangles and reduction ask for, where they do. The mesh has more

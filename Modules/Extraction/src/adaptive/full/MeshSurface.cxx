@@ -64,10 +64,12 @@ Corners cornersIn(const TriangleMesh& mesh, std::int64_t t) {
 MeshSurface::MeshSurface(const TriangleMesh& input, const MeshParts& parts,
                          std::optional<double> boundMm)
     : FullSurface(frameOf(voxelOf(parts, boundMm))), input_(input), parts_(parts) {
-    for (const std::int64_t t : parts.crossing) {
-        Corners corners = parts.view().cornersOf(t);
-        for (Vec3& p : corners) p = p + parts.origin;
-        crossing_.push_back(corners);
+    for (const auto* const triangles : {&parts.crossing.found, &parts.crossing.undecided}) {
+        for (const std::int64_t t : *triangles) {
+            Corners corners = parts.view().cornersOf(t);
+            for (Vec3& p : corners) p = p + parts.origin;
+            crossing_.push_back(corners);
+        }
     }
     std::sort(crossing_.begin(), crossing_.end(), isBefore);
     std::vector<std::uint32_t> marks = parts.marks;

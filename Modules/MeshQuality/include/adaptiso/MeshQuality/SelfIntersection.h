@@ -43,6 +43,9 @@ struct SelfIntersections {
     bool isClear() const { return pairCount == 0 && isComplete; }
 };
 
+/// "1,234"; where there may be more "more than 4,100,000", with two digits, or "at least 1".
+std::string foundText(std::int64_t found, bool isComplete);
+
 /// "3 pairs", "more than 4,100,000 pairs": how many were found, where there may be more.
 std::string pairsText(std::int64_t found, bool isComplete);
 
@@ -62,6 +65,18 @@ SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
 /// The triangles of those pairs, and those that near pairs leave undecided, ascending. What is
 /// required, what is thrown and what it costs: as findSelfIntersections() has it.
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh);
+
+/// The same apart.
+struct CrossingTriangles {
+    std::vector<std::int64_t> found;      ///< that cross others, ascending
+    std::vector<std::int64_t> undecided;  ///< others that near pairs leave undecided, ascending
+
+    bool isEmpty() const { return found.empty() && undecided.empty(); }
+    bool isComplete() const { return undecided.empty(); }
+};
+CrossingTriangles findCrossingTriangles(const TriangleMesh& mesh);
+/// \pre the corners of triangles are finite
+CrossingTriangles findCrossingTriangles(const TriangleView& mesh);
 
 /// Cell of a triangle that may cross any other.
 inline constexpr std::uint64_t kNoCell = ~std::uint64_t{0};
