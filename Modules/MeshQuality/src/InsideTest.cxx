@@ -1,5 +1,6 @@
 #include "adaptiso/MeshQuality/InsideTest.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -42,18 +43,21 @@ std::optional<bool> crossesOddly(const Vec3& p, const Ray& ray, const TriangleMe
 }  // namespace
 
 InsideTest::InsideTest(const TriangleMesh& mesh, const AabbTree& tree)
-    : mesh_(&mesh), tree_(&tree), isClosed_(everyEdgeIsInTwo(mesh)) {}
+    : mesh_(&mesh), tree_(&tree), box_(BoundingBox::empty()), isClosed_(everyEdgeIsInTwo(mesh)) {
+    for (const std::int64_t triangle : tree.triangles()) box_.add(tree.triangleBox(triangle));
+}
 
 Side InsideTest::sideOf(const Vec3& p, std::int64_t* tests) const {
     constexpr int kRays = 6, kMajority = 4;
-    int inside = 0;
-    for (int n = 0; n < kRays; ++n) {
+    if (!box_.overlaps({p, p})) return Side::Outside;
+    int inside = 0, outside = 0;
+    for (int n = 0; inside < kMajority && outside <= kRays - kMajority; ++n) {
         const auto isOdd = crossesOddly(p, {n % 3, n < 3 ? 1 : -1}, *mesh_, *tree_, tests);
         if (!isOdd) return Side::On;
         if (isClosed_) return *isOdd ? Side::Inside : Side::Outside;
-        inside += *isOdd ? 1 : 0;
+        ++(*isOdd ? inside : outside);
     }
-    return inside >= kMajority ? Side::Inside : Side::Outside;
+    return inside == kMajority ? Side::Inside : Side::Outside;
 }
 
 namespace {
@@ -69,22 +73,32 @@ bool isOnTriangle(const Vec3& p, const Corners& t) {
 
 }  // namespace
 
-int perturbedSide(const Point2& p, const Point2& from, const Point2& to) {
-    const int side = orient2d(from, to, p);
+namespace {
+
+/// \param side  orient2d of from, to and the point; 0 is broken as perturbedSide() has it
+int brokenTie(int side, const Point2& from, const Point2& to) {
     if (side != 0) return side;
     const double along = to[0] - from[0], up = to[1] - from[1];
     if (along != 0) return along > 0 ? 1 : -1;
     return up > 0 ? -1 : up < 0 ? 1 : 0;
 }
 
+}  // namespace
+
+int perturbedSide(const Point2& p, const Point2& from, const Point2& to) {
+    return brokenTie(orient2d(from, to, p), from, to);
+}
+
 Hit hitOf(const Vec3& p, const Ray& ray, const Corners& t) {
     const Point2 q = dropAxis(p, ray.axis);
     const Point2 a = dropAxis(t[0], ray.axis), b = dropAxis(t[1], ray.axis),
                  c = dropAxis(t[2], ray.axis);
+    const std::array<int, 3> sides{orient2d(a, b, q), orient2d(b, c, q), orient2d(c, a, q)};
+    if (!haveOneSign(sides[0], sides[1], sides[2])) return {};  // the line passes beside it
     const int height = orient3d(t[0], t[1], t[2], p);
     if (height == 0 && isOnTriangle(p, t)) return {.isOn = true};
-    const int facing = perturbedSide(q, a, b);  // 1: the normal points along the axis
-    if (facing == 0 || perturbedSide(q, b, c) != facing || perturbedSide(q, c, a) != facing) {
+    const int facing = brokenTie(sides[0], a, b);  // 1: the normal points along the axis
+    if (facing == 0 || brokenTie(sides[1], b, c) != facing || brokenTie(sides[2], c, a) != facing) {
         return {};
     }
     return {.crosses = height * facing * ray.sign < 0};

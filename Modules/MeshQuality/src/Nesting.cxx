@@ -52,7 +52,13 @@ struct Surface {
           single(singleOf(m)),
           singleTree(single ? std::make_optional<AabbTree>(*single) : std::nullopt),
           inside(single ? *single : m, single ? *singleTree : tree),
-          meetsOther(m.triangles.size()) {}
+          meetsOther(m.triangles.size()),
+          hasArea(m.triangles.size()) {
+        for (std::int64_t n = 0; n < std::ssize(m.triangles); ++n) {
+            const Corners corners = cornersOf(m, n);
+            hasArea[n] = areFinite(corners) && axisWithArea(corners) >= 0;
+        }
+    }
 
     const TriangleMesh& mesh;
     AabbTree tree;
@@ -60,6 +66,7 @@ struct Surface {
     std::optional<AabbTree> singleTree;
     InsideTest inside;
     std::vector<std::uint8_t> meetsOther;  ///< by triangle
+    std::vector<bool> hasArea;  ///< by triangle, with finite corners: the others meet nothing
 
     /// From any thread.
     void mark(std::int64_t triangle) {
@@ -94,10 +101,10 @@ std::optional<Meetings> findByBoxes(Surface& inner, Surface& outer, std::int64_t
         Meetings& found = ofPiece[begin / kGrain];
         std::int64_t tests = 0;
         for (std::int64_t n = begin; n < end && !areTooMany; ++n) {
+            if (!inner.hasArea[n]) continue;
             const Corners corners = cornersOf(inner.mesh, n);
-            if (!areFinite(corners)) continue;
             outer.tree.forEachOverlap(inner.tree.triangleBox(n), [&](std::int64_t other) {
-                if (++tests > kMostTests) return;
+                if (!outer.hasArea[other] || ++tests > kMostTests) return;
                 if (!trianglesMeet(corners, cornersOf(outer.mesh, other))) return;
                 found.add({n, other}, most);
                 inner.mark(n);
@@ -157,7 +164,7 @@ std::vector<VertexId> findSpokesmen(const Surface& surface, const Surface& other
         for (const VertexId v : t) isUsed[v] = true;
         // a triangle without area meets nothing, wherever it lies
         const bool joins = other.inside.isClosed() && surface.meetsOther[n] == 0;
-        if (!joins || axisWithArea(corners) < 0) continue;
+        if (!joins || !surface.hasArea[n]) continue;
         sets.join(t[0], t[1]);
         sets.join(t[1], t[2]);
     }
@@ -168,23 +175,17 @@ std::vector<VertexId> findSpokesmen(const Surface& surface, const Surface& other
     return spokesmen;
 }
 
-/// The side of every vertex; of those not used, Outside.
-/// \param isComplete  becomes false where rays pass too many triangles: other sides are not known
-std::vector<Side> findSides(const Surface& surface, const Surface& other,
-                            const std::vector<VertexId>& spokesmen, std::atomic<bool>& isComplete) {
+/// The side of every vertex; empty: not used, or not known as rays pass too many triangles.
+std::vector<std::optional<Side>> findSides(const Surface& surface, const Surface& other,
+                                           const std::vector<VertexId>& spokesmen) {
     const std::int64_t count = std::ssize(spokesmen);
     const std::int64_t most =  // for each kGrain vertices
         std::max(kLeastRayTests, kMostRayTests / (count / kGrain + 1));
-    std::vector<Side> sides(spokesmen.size(), Side::Outside);
+    std::vector<std::optional<Side>> sides(spokesmen.size());
     parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
         std::int64_t tests = 0;
-        for (VertexId v = begin; v < end; ++v) {
-            if (spokesmen[v] != v) continue;
-            if (tests > most) {
-                isComplete = false;
-                return;
-            }
-            sides[v] = other.inside.sideOf(surface.mesh.points[v], &tests);
+        for (VertexId v = begin; v < end && tests <= most; ++v) {
+            if (spokesmen[v] == v) sides[v] = other.inside.sideOf(surface.mesh.points[v], &tests);
         }
     });
     for (VertexId v = 0; v < count; ++v) {
@@ -194,36 +195,44 @@ std::vector<Side> findSides(const Surface& surface, const Surface& other,
 }
 
 struct SideCounts {
-    std::int64_t used = 0, inside = 0;
+    std::int64_t used = 0, inside = 0, notInside = 0;
     VertexId firstNotInside = -1;
+
+    bool areKnown() const { return inside + notInside == used; }
 };
 
-SideCounts countSides(const std::vector<VertexId>& spokesmen, const std::vector<Side>& sides) {
+SideCounts countSides(const std::vector<VertexId>& spokesmen,
+                      const std::vector<std::optional<Side>>& sides) {
     SideCounts counts;
     for (std::size_t v = 0; v < sides.size(); ++v) {
-        if (spokesmen[v] < 0) continue;
-        ++counts.used;
-        if (sides[v] == Side::Inside) {
+        if (spokesmen[v] >= 0) ++counts.used;
+        if (!sides[v]) continue;
+        if (*sides[v] == Side::Inside) {
             ++counts.inside;
-        } else if (counts.firstNotInside < 0) {
+        } else if (++counts.notInside == 1) {
             counts.firstNotInside = static_cast<VertexId>(v);
         }
     }
     return counts;
 }
 
-/// Distance of the farthest vertex that is used and not inside from the other surface.
-double farthestOutMm(const Surface& surface, const Surface& other,
-                     const std::vector<VertexId>& spokesmen, const std::vector<Side>& sides) {
+/// Finds the distance of the farthest vertex that is not inside from the other surface.
+void measureFarthestOut(const Surface& surface, const Surface& other,
+                        const std::vector<std::optional<Side>>& sides, NestingReport& report) {
     std::vector<double> squared(sides.size());
+    std::vector<StandIn> leftOut;
     findNearestPlaces(
         other.mesh, other.tree, std::ssize(sides),
         [&](VertexId v) -> std::optional<Vec3> {
-            if (spokesmen[v] < 0 || sides[v] == Side::Inside) return std::nullopt;
+            if (!sides[v] || *sides[v] == Side::Inside) return std::nullopt;
             return surface.mesh.points[v];
         },
-        [&](VertexId v, const ClosestPoint& nearest) { squared[v] = nearest.squaredDistanceMm2; });
-    return squared.empty() ? 0 : std::sqrt(*std::max_element(squared.begin(), squared.end()));
+        [&](VertexId v, const ClosestPoint& nearest) { squared[v] = nearest.squaredDistanceMm2; },
+        true, &leftOut);
+    if (!squared.empty()) {
+        report.farthestOutMm = std::sqrt(*std::max_element(squared.begin(), squared.end()));
+    }
+    report.isFarthestKnown = leftOut.empty();
 }
 
 /// Both have the same triangles at the same places, whatever their numbers.
@@ -282,22 +291,20 @@ NestingReport checkNesting(const TriangleMesh& innerMesh, const TriangleMesh& ou
     report.crossingPairs = meetings.count;
     report.isComplete = meetings.isComplete;
 
-    std::atomic<bool> areSidesKnown = true;
     const std::vector<VertexId> innerSpokesmen = findSpokesmen(inner, outer);
-    const std::vector<Side> innerSides = findSides(inner, outer, innerSpokesmen, areSidesKnown);
+    const std::vector<std::optional<Side>> innerSides = findSides(inner, outer, innerSpokesmen);
     const SideCounts ofInner = countSides(innerSpokesmen, innerSides);
     report.innerVertices = ofInner.used;
-    report.innerVerticesNotInside = ofInner.used - ofInner.inside;
+    report.innerVerticesNotInside = ofInner.notInside;
     report.firstNotInside = ofInner.firstNotInside;
-    report.farthestOutMm = farthestOutMm(inner, outer, innerSpokesmen, innerSides);
+    measureFarthestOut(inner, outer, innerSides, report);
 
     const std::vector<VertexId> outerSpokesmen = findSpokesmen(outer, inner);
-    const SideCounts ofOuter =
-        countSides(outerSpokesmen, findSides(outer, inner, outerSpokesmen, areSidesKnown));
+    const SideCounts ofOuter = countSides(outerSpokesmen, findSides(outer, inner, outerSpokesmen));
     report.outerVertices = ofOuter.used;
     report.outerVerticesInside = ofOuter.inside;
 
-    report.areSidesKnown = areSidesKnown;
+    report.areSidesKnown = ofInner.areKnown() && ofOuter.areKnown();
     report.relation = relationOf(report);
     if (report.relation == NestingRelation::Crossing && areIdentical(innerMesh, outerMesh)) {
         report.relation = NestingRelation::Identical;
@@ -305,7 +312,7 @@ NestingReport checkNesting(const TriangleMesh& innerMesh, const TriangleMesh& ou
     if (report.crossingPairs > 0) {
         const auto& [a, b] = report.pairs.front();
         report.gap = {triangleDistance(cornersOf(innerMesh, a), cornersOf(outerMesh, b)), a, b};
-    } else if (report.relation != NestingRelation::Unknown) {
+    } else if (report.isComplete) {
         report.gap = surfaceGap(innerMesh, inner.tree, outerMesh, outer.tree);
     }
     if (std::ssize(report.pairs) > options.maxPairs) report.pairs.resize(options.maxPairs);

@@ -498,11 +498,21 @@ Check makeCheck(const CheckRule& rule, Outcome outcome, const std::string& findi
     return {rule.key, rule.name, rule.isRequiredBy(rules.profileInUse()), outcome, finding};
 }
 
+constexpr const char* kNothingToMeasure = "a surface has no triangle to measure";
+constexpr const char* kNotDecided =
+    "not decided: hundreds of triangles lie near each one, more than are tested";
+
+bool isOneEmpty(const NestingReport& report) {
+    return report.innerVertices == 0 || report.outerVertices == 0;
+}
+
 std::string outsideText(const NestingReport& report, const std::string& inner,
                         const std::string& outer) {
-    return counted(report.innerVerticesNotInside, "vertex", "vertices") + " of " + inner +
+    return foundText(report.innerVerticesNotInside, report.areSidesKnown) +
+           (report.innerVerticesNotInside == 1 ? " vertex of " : " vertices of ") + inner +
            (report.innerVerticesNotInside == 1 ? " is" : " are") + " not inside " + outer +
-           ": out by up to " + formatLength(report.farthestOutMm, 2) + " mm";
+           ": out by " + (report.isFarthestKnown ? "up to " : "at least ") +
+           formatLength(report.farthestOutMm, 2) + " mm";
 }
 
 std::string relationText(const NestingReport& report, const std::string& inner,
@@ -528,9 +538,9 @@ std::string relationText(const NestingReport& report, const std::string& inner,
                    counted(report.outerVerticesInside, "vertex", "vertices") + " of " + outer +
                    (report.outerVerticesInside == 1 ? " lies" : " lie") + " inside " + inner;
         case NestingRelation::Unknown:
-            return report.innerVertices == 0 || report.outerVertices == 0
-                       ? "a surface has no triangle to measure"
-                       : "not decided: too many triangles lie beside each other";
+            return isOneEmpty(report)                  ? kNothingToMeasure
+                   : report.innerVerticesNotInside > 0 ? outsideText(report, inner, outer)
+                                                       : kNotDecided;
     }
     throw InternalError("relationText: unknown relation");
 }
@@ -660,8 +670,6 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
                                   outer;
     const bool meet = report.crossingPairs > 0;
     const bool areIdentical = report.relation == NestingRelation::Identical;
-    constexpr const char* kNotDecided =
-        "not decided: hundreds of triangles lie near each one, more than are tested";
     add(kNoCrossing, !meet && report.isComplete,
         areIdentical ? "they lie on each other everywhere"
         : meet       ? pairsText(report.crossingPairs, report.isComplete) +
@@ -670,8 +678,8 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
                             : kNotDecided);
     add(kNested, report.isStrictlyNested(), relationText(report, inner, outer));
     if (report.gap.triangleA < 0) {
-        checks.push_back(
-            makeCheck(kMinGap, Outcome::Undecided, "a surface has no triangle to measure", rules));
+        checks.push_back(makeCheck(kMinGap, Outcome::Undecided,
+                                   isOneEmpty(report) ? kNothingToMeasure : kNotDecided, rules));
     } else {
         const double limit = rules.minGapMm.value_or(CheckRules::kDefaultMinGapMm);
         const bool isWide = report.gap.nearest.distanceMm >= limit;

@@ -223,6 +223,9 @@ TEST(CrossingPairs, OfTrianglesThatAllCrossEndWithABudget) {
     EXPECT_EQ(reported.pairs.size(), 5U);
     EXPECT_EQ(crossingText(reported).find("more than "), 0U);
     EXPECT_EQ(crossingTriangles(numbered.mesh).size(), std::size_t{kCount});
+    const CrossingTriangles triangles = findCrossingTriangles(numbered.mesh);
+    EXPECT_EQ(triangles.found.size() + triangles.undecided.size(), std::size_t{kCount});
+    EXPECT_GT(triangles.found.size(), std::size_t{kCount / 2});
 }
 
 // 500 triangles each cross all others: few enough for an exact count.
@@ -250,6 +253,9 @@ TEST(CrossingPairs, LeaveOutTrianglesWithoutArea) {
 }
 
 TEST(CrossingPairs, AreToldInWords) {
+    EXPECT_EQ(foundText(1234, true), "1,234");
+    EXPECT_EQ(foundText(1234, false), "more than 1,200");
+    EXPECT_EQ(foundText(1, false), "at least 1");
     EXPECT_EQ(pairsText(1, true), "1 pair");
     EXPECT_EQ(pairsText(1234, true), "1,234 pairs");
     EXPECT_EQ(pairsText(1, false), "at least 1 pair");
@@ -283,6 +289,45 @@ TEST(Nesting, KeepsNoMorePairsThanItNames) {
     const NestingReport all = checkNesting(mesh, other, {.maxPairs = 2000000});
     EXPECT_EQ(std::ssize(all.pairs), report.crossingPairs);
     EXPECT_TRUE(std::equal(report.pairs.begin(), report.pairs.end(), all.pairs.begin()));
+}
+
+/// Triangles that overlap in one plane.
+TriangleMesh pile(int count) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(0, 1);
+    TriangleMesh mesh;
+    for (int n = 0; n < count; ++n) {
+        const double x = place(random), y = place(random);
+        for (const Vec3& p : {Vec3{x, y, 0}, Vec3{x + 50, y, 0}, Vec3{x, y + 50, 0}}) {
+            mesh.points.push_back(p);
+        }
+        mesh.triangles.push_back({3 * n, 3 * n + 1, 3 * n + 2});
+    }
+    return mesh;
+}
+
+TEST(Nesting, OfPilesBesideEachOtherIsApart) {
+    const TriangleMesh mesh = pile(6000);
+    for (const double z : {-0.25, 0.25}) {
+        const NestingReport report = checkNesting(translated(mesh, {0, 0, z}), mesh);
+        EXPECT_EQ(report.relation, NestingRelation::Apart);
+        EXPECT_TRUE(report.areSidesKnown);
+        EXPECT_EQ(report.gap.nearest.distanceMm, 0.25);
+    }
+}
+
+// The piles are open, and rays from points between their boxes' sides pass thousands of triangles.
+TEST(Nesting, CountsNoVertexWhoseSideIsNotKnown) {
+    TriangleMesh lower = pile(6000), upper = lower;
+    for (Vec3& p : lower.points) p = turned(p);
+    for (Vec3& p : upper.points) p = turned(p + Vec3{0, 0, 0.25});
+    const NestingReport report = checkNesting(lower, upper);
+    EXPECT_EQ(report.crossingPairs, 0);
+    EXPECT_FALSE(report.areSidesKnown);
+    EXPECT_EQ(report.relation, NestingRelation::Unknown);
+    EXPECT_LT(report.innerVerticesNotInside, report.innerVertices);
+    EXPECT_GE(report.outerVertices, report.outerVerticesInside);
+    EXPECT_NEAR(report.gap.nearest.distanceMm, 0.25, 1e-9);
 }
 
 TEST(InsideOutPieces, OfShellsInEachOtherAlternate) {
@@ -359,6 +404,90 @@ TEST(NearestPlaces, OfTrianglesThatAllCrossAreThoseOfSomeAndCounted) {
         const double exact = std::sqrt(tree.closestPoint(points[n]).squaredDistanceMm2);
         EXPECT_GE(std::sqrt(squared[n]), exact);
     }
+}
+
+TEST(NearestPlaces, OfTrianglesThatAllCrossSomeAreExactAndStandForOthers) {
+    constexpr int kCount = 6000;
+    const TriangleMesh mesh = crossingAtOnePoint(kCount);
+    const AabbTree tree(mesh);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> place(-1, 1);
+    std::vector<Vec3> points;
+    for (int n = 0; n < 9000; ++n) points.push_back({place(random), place(random), place(random)});
+    const auto search = [&](std::vector<double>& squared) {
+        squared.assign(points.size(), -1);
+        std::vector<StandIn> standIns;
+        const RoughDistances rough = findNearestPlaces(
+            mesh, tree, std::ssize(points), [&](std::int64_t n) { return points[n]; },
+            [&](std::int64_t n, const ClosestPoint& nearest) {
+                squared[n] = nearest.squaredDistanceMm2;
+            },
+            true, &standIns);
+        EXPECT_EQ(rough.open, 0);
+        return standIns;
+    };
+    std::vector<double> squared, again;
+    const std::vector<StandIn> standIns = search(squared);
+    EXPECT_GT(standIns.size(), points.size() / 2);
+    std::vector<bool> isLeftOut(points.size());
+    for (const auto& [point, like] : standIns) isLeftOut[point] = true;
+    for (const auto& [point, like] : standIns) {
+        EXPECT_FALSE(isLeftOut[like]);
+        EXPECT_LE(std::abs(like - point), 256);  // evenly spread
+    }
+    std::int64_t looks = 0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        if (isLeftOut[n]) continue;
+        ++looks;
+        const double exact = std::sqrt(tree.closestPoint(points[n]).squaredDistanceMm2);
+        EXPECT_GE(std::sqrt(squared[n]), exact);
+        EXPECT_LE(std::sqrt(squared[n]), exact / SearchEffort::kRough);
+    }
+    EXPECT_GT(looks, 100);
+
+    const ThreadLimitGuard one(1);
+    const std::vector<StandIn> others = search(again);
+    EXPECT_EQ(again, squared);
+    EXPECT_EQ(others.size(), standIns.size());
+}
+
+TEST(SurfaceDistance, OfTrianglesThatAllCrossIsThatOfSomeSamples) {
+    const TriangleMesh mesh = crossingAtOnePoint(3000);
+    // from the mesh to itself rough distances were as large as the mesh
+    const DistanceStatistics own = surfaceDistance(mesh, mesh, {.isSymmetric = false}).combined;
+    EXPECT_LE(own.maxMm, 1e-11);
+
+    constexpr std::int64_t kSamples = 20000;
+    TriangleMesh other = mesh;
+    for (Vec3& p : other.points) p = p + Vec3{0.01, 0.02, 0.03};
+    const DistanceStatistics found =
+        surfaceDistance(mesh, other, {.samples = kSamples, .isSymmetric = false}).combined;
+    EXPECT_GT(found.leftOut, kSamples / 2);
+    EXPECT_EQ(found.measured(), kSamples - found.leftOut);
+    EXPECT_LE(found.maxMm, norm(Vec3{0.01, 0.02, 0.03}) + 1e-12);
+    // random points, each by the tree
+    const AabbTree tree(other);
+    double sum = 0;
+    constexpr int kPoints = 4000;
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> place(0, 1);
+    std::vector<double> upTo;
+    double area = 0;
+    for (const Triangle& t : mesh.triangles) {
+        area += norm(areaVector2(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]])) / 2;
+        upTo.push_back(area);
+    }
+    for (int n = 0; n < kPoints; ++n) {
+        const auto at = std::lower_bound(upTo.begin(), upTo.end(), place(random) * area);
+        const Corners c = cornersOf(mesh, at - upTo.begin());
+        double u = place(random), v = place(random);
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        sum += std::sqrt(
+            tree.closestPoint(c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0])).squaredDistanceMm2);
+    }
+    // two standard errors of this one, and as many samples or more of the other
+    EXPECT_NEAR(found.meanMm, sum / kPoints, 3 * found.meanErrorMm);
+    EXPECT_LE(found.meanErrorMm, 0.1 * found.meanMm);
 }
 
 }  // namespace adaptiso::testing

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/BoundingBox.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso {
@@ -15,7 +16,8 @@ enum class Side { Outside, On, Inside };
 /// [Edelsbrunner1990, simulation of simplicity], so that each passes one triangle of the fan.
 ///
 /// Where every edge lies in two triangles all rays agree, and one is cast. An open surface has no
-/// inside; then six rays are cast along the axes, and four must say so.
+/// inside; then rays are cast along the axes, and four of the six must say so. No ray is needed
+/// beyond the surface's box.
 /// Triangles with a corner that is not finite are not there.
 /// Cost: O(log T + triangles on the ray) a point. Points may be asked for in parallel.
 class InsideTest {
@@ -33,6 +35,7 @@ public:
 private:
     const TriangleMesh* mesh_;
     const AabbTree* tree_;
+    BoundingBox box_;
     bool isClosed_;
 };
 

@@ -32,14 +32,17 @@ struct NestingReport {
     std::int64_t crossingPairs = 0;   ///< pairs of triangles with a point in common
     std::vector<TrianglePair> pairs;  ///< the first of them, ascending: of inner, of outer
     bool isComplete = true;           ///< false: more may meet, as SelfIntersections::isComplete
-    bool areSidesKnown = true;  ///< false: rays would pass too many triangles, counts are too low
+    bool areSidesKnown = true;  ///< false: rays would pass too many triangles; of some vertices
+                                ///< the side is not known, and they are in no count of one
     std::int64_t innerVertices = 0;           ///< of inner, used by a triangle
     std::int64_t innerVerticesNotInside = 0;  ///< of those, not strictly inside outer
     VertexId firstNotInside = -1;             ///< the first of those
     double farthestOutMm = 0;                 ///< how far the farthest of those lies from outer
+    bool isFarthestKnown = true;  ///< false: not all are measured, see findNearestPlaces()
     std::int64_t outerVertices = 0;
     std::int64_t outerVerticesInside = 0;  ///< of outer, strictly inside inner
-    SurfaceGap gap;                        ///< A is inner, B outer; 0 mm when they meet
+    SurfaceGap gap;  ///< A is inner, B outer; 0 mm when they meet; not measured where none is
+                     ///< known to meet, but not all are decided
 
     bool isStrictlyNested() const { return relation == NestingRelation::Nested; }
 };
