@@ -15,6 +15,7 @@
 #include "Triangles.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/Certificate.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
@@ -26,10 +27,12 @@ namespace {
 constexpr std::size_t kMostNumbers = std::numeric_limits<std::uint32_t>::max();
 
 /// The triangles of a mesh that may cross others, those with area and finite corners, by 32-bit
-/// numbers.
+/// numbers. Where many are stored in any order they come in the order of space, with points of
+/// their own: nearly all that is done with neighbours would wait for memory.
 struct FiniteTriangles {
     std::vector<TriangleView::Triangle> triangles;
     std::vector<std::int64_t> numbers;  ///< in the mesh
+    std::vector<Vec3> points;           ///< empty: the mesh's
 
     explicit FiniteTriangles(const TriangleMesh& mesh)
         : FiniteTriangles(mesh, [](std::int64_t) { return true; }) {}
@@ -61,9 +64,59 @@ struct FiniteTriangles {
                                  static_cast<std::uint32_t>(c)});
             numbers.push_back(n);
         }
+        if (areScattered(mesh.points.size())) sort(mesh);
     }
 
-    TriangleView view(const TriangleMesh& of) const { return {of.points, triangles}; }
+    TriangleView view(const TriangleMesh& of) const {
+        return {points.empty() ? of.points : points, triangles};
+    }
+
+private:
+    /// As a fraction of the points: the mean step from a triangle to the next in the list, by their
+    /// last points. Marching cubes' is a thousandth, in any order a fifth.
+    bool areScattered(std::size_t pointCount) const {
+        constexpr std::size_t kMany = 1 << 15;  // below, all fits a processor's cache
+        constexpr double kScattered = 0.05;
+        if (triangles.size() < kMany) return false;
+        double steps = 0, before = 0;
+        for (const TriangleView::Triangle& t : triangles) {
+            const double last = *std::max_element(t.begin(), t.end());
+            steps += std::abs(last - before);
+            before = last;
+        }
+        return steps >
+               kScattered * static_cast<double>(triangles.size()) * static_cast<double>(pointCount);
+    }
+
+    void sort(const TriangleMesh& mesh) {
+        constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
+        const TriangleView stored = view(mesh);
+        const std::vector<std::uint32_t> order =
+            inMortonOrder(triangles.size(), stored.box(), [&](std::uint32_t t) {
+                const Corners c = stored.cornersOf(t);
+                return 1.0 / 3 * (c[0] + c[1] + c[2]);
+            });
+        std::vector<std::uint32_t> place(mesh.points.size(), kNone);
+        std::vector<TriangleView::Triangle> sorted;
+        std::vector<std::int64_t> sortedNumbers;
+        reserveInHugePages(sorted, order.size());
+        reserveInHugePages(sortedNumbers, order.size());
+        reserveInHugePages(points, mesh.points.size());
+        for (const std::uint32_t t : order) {
+            TriangleView::Triangle moved = triangles[t];
+            for (std::uint32_t& v : moved) {
+                if (place[v] == kNone) {
+                    place[v] = static_cast<std::uint32_t>(points.size());
+                    points.push_back(mesh.points[v]);
+                }
+                v = place[v];
+            }
+            sorted.push_back(moved);
+            sortedNumbers.push_back(numbers[t]);
+        }
+        triangles = std::move(sorted);
+        numbers = std::move(sortedNumbers);
+    }
 };
 
 /// Distance that rounding of coordinates in a box may hide.
@@ -231,18 +284,18 @@ std::optional<CrossingPairs> findByBoxes(const TriangleView& mesh, const Triangl
                                          const IsMet& isMet) {
     constexpr std::int64_t kPiece = 128;  // leaves
     // of a piece of 1,024 triangles; those of surfaces take a tenth
-    constexpr std::int64_t kMostTests = 256 * 1024, kMostLeaves = kMostTests;
+    constexpr std::int64_t kMost = 256 * 1024;
     const TriangleTree::Pairs near(tree, mesh);
     std::vector<CrossingPairs> ofPiece((tree.leafCount() + kPiece - 1) / kPiece);
     std::atomic<bool> areTooMany = false;
     parallelForPieces(tree.leafCount(), kPiece, [&](std::int64_t begin, std::int64_t end) {
         CrossingPairs& found = ofPiece[begin / kPiece];
         if (areTooMany) return;
-        const bool isWhole =
-            near.forEach(begin, end, kMostLeaves, [&](std::uint32_t a, std::uint32_t b) {
-                if (++found.tests <= kMostTests && isMet(a, b)) found.pairs.push_back({a, b});
-            });
-        if (!isWhole || found.tests > kMostTests) areTooMany = true;
+        const bool isWhole = near.forEach(begin, end, kMost, [&](std::uint32_t a, std::uint32_t b) {
+            ++found.tests;
+            if (isMet(a, b)) found.pairs.push_back({a, b});
+        });
+        if (!isWhole) areTooMany = true;
     });
     if (areTooMany) return std::nullopt;
     CrossingPairs all;
@@ -278,8 +331,10 @@ CrossingTriangles findCrossingTriangles(const TriangleView& mesh) {
 CrossingTriangles findCrossingTriangles(const TriangleMesh& mesh) {
     const FiniteTriangles finite(mesh);
     CrossingTriangles crossing = findCrossingTriangles(finite.view(mesh));
-    for (std::int64_t& t : crossing.found) t = finite.numbers[t];
-    for (std::int64_t& t : crossing.undecided) t = finite.numbers[t];
+    for (auto* const some : {&crossing.found, &crossing.undecided}) {
+        for (std::int64_t& t : *some) t = finite.numbers[t];
+        std::sort(some->begin(), some->end());
+    }
     return crossing;
 }
 
@@ -307,7 +362,8 @@ SelfIntersections findSelfIntersections(const TriangleMesh& mesh,
     if (options.maxPairs == 0) return result;
     result.pairs.reserve(found.pairs.size());
     for (const auto& [a, b] : found.pairs) {
-        result.pairs.push_back({finite.numbers[a], finite.numbers[b]});
+        const auto [first, second] = std::minmax(finite.numbers[a], finite.numbers[b]);
+        result.pairs.push_back({first, second});
     }
     keepFirst(result.pairs, options.maxPairs);
     std::sort(result.pairs.begin(), result.pairs.end());

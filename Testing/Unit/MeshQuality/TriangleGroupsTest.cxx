@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <set>
 #include <vector>
@@ -240,6 +241,41 @@ TEST(CrossingPairs, OfFewTrianglesAreAllCounted) {
     }
     EXPECT_TRUE(found.isComplete);
     EXPECT_EQ(found.pairCount, expected);
+}
+
+// Many triangles in any order are sorted by space; reports name them as they are stored.
+TEST(CrossingPairs, AreThoseOfTheMeshWhateverItsOrder) {
+    const TriangleMesh inOrder = merged({icosphere(6, {}, 50), icosphere(3, {49, 1, 2}, 10)});
+    ASSERT_GT(inOrder.triangles.size(), std::size_t{1} << 15);
+    std::mt19937 random(5);
+    std::vector<VertexId> number(inOrder.points.size());
+    std::vector<std::int64_t> place(inOrder.triangles.size());
+    std::iota(number.begin(), number.end(), 0);
+    std::iota(place.begin(), place.end(), 0);
+    std::shuffle(number.begin(), number.end(), random);
+    std::shuffle(place.begin(), place.end(), random);
+    TriangleMesh mixed = inOrder;
+    for (std::size_t v = 0; v < number.size(); ++v) mixed.points[number[v]] = inOrder.points[v];
+    for (std::size_t t = 0; t < place.size(); ++t) {
+        Triangle& moved = mixed.triangles[place[t]];
+        moved = inOrder.triangles[t];
+        for (VertexId& v : moved) v = number[v];
+    }
+    constexpr std::int64_t kAll = 1 << 20;
+    const SelfIntersections expected = findSelfIntersections(inOrder, {.maxPairs = kAll}),
+                            found = findSelfIntersections(mixed, {.maxPairs = kAll});
+    ASSERT_GT(expected.pairCount, 50);
+    std::vector<TrianglePair> pairs;
+    for (const auto& [a, b] : expected.pairs) {
+        pairs.push_back({std::min(place[a], place[b]), std::max(place[a], place[b])});
+    }
+    std::ranges::sort(pairs);
+    EXPECT_EQ(found.pairs, pairs);
+    std::vector<std::int64_t> triangles;
+    for (const auto& pair : pairs) triangles.insert(triangles.end(), pair.begin(), pair.end());
+    std::ranges::sort(triangles);
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    EXPECT_EQ(crossingTriangles(mixed), triangles);
 }
 
 TEST(CrossingPairs, LeaveOutTrianglesWithoutArea) {

@@ -149,11 +149,10 @@ public:
 
     /// Calls visit(a, b), a < b, for the pairs of which the triangle that comes first by order of
     /// leaves lies in one of the leaves [begin, end): all leaves give each pair once.
-    /// \param mostLeaves  pairs of leaves to look at
+    /// \param most  pairs of leaves to look up, and of triangles to visit
     /// \return  false: there were more, and not all pairs are visited
     template <class Visit>
-    bool forEach(std::int64_t begin, std::int64_t end, std::int64_t mostLeaves,
-                 const Visit& visit) const;
+    bool forEach(std::int64_t begin, std::int64_t end, std::int64_t most, const Visit& visit) const;
 
 private:
     template <class Visit>
@@ -204,8 +203,13 @@ private:
 };
 
 template <class Visit>
-bool TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, std::int64_t mostLeaves,
+bool TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, std::int64_t most,
                                   const Visit& visit) const {
+    std::int64_t leaves = 0, pairs = 0;
+    const auto visitNext = [&](std::uint32_t a, std::uint32_t b) {
+        ++pairs;
+        visit(a, b);
+    };
     // leaves that come one after the other are near the same ones: these are looked up together
     constexpr std::int64_t kTogether = 8;
     std::vector<std::pair<std::int64_t, Box>> near;
@@ -218,18 +222,19 @@ bool TriangleTree::Pairs::forEach(std::int64_t begin, std::int64_t end, std::int
         tree_.forEachLeaf(all, first + 1, [&](std::int64_t other, const Box& box) {
             near.emplace_back(other, box);
         });
-        mostLeaves -= std::ssize(near);
-        if (mostLeaves < 0) return false;
+        leaves += std::ssize(near);
+        if (leaves > most) return false;
         for (std::int64_t number = first; number < last; ++number) {
-            forEachIn(number, visit);
+            forEachIn(number, visitNext);
             const Box own = leaves_[number].all();
             for (const auto& [other, box] : near) {
-                if (other > number && box.overlaps(own))
-                    forEachBetween(number, own, other, box, visit);
+                if (other <= number || !box.overlaps(own)) continue;
+                forEachBetween(number, own, other, box, visitNext);
+                if (pairs > most) return false;
             }
         }
     }
-    return true;
+    return pairs <= most;
 }
 
 /// Pairs within a leaf.
