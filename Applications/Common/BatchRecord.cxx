@@ -201,9 +201,9 @@ bool isSameContent(const RecordedFile& a, const RecordedFile& b) {
     return a.files == b.files && a.bytes == b.bytes && a.sha256 == b.sha256;
 }
 
-std::string changeOf(const RecordedFile& recorded, const fs::path& path) {
+FileChange changeOf(const RecordedFile& recorded, const fs::path& path) {
     std::error_code error;
-    if (!fs::exists(path, error)) return "is gone";
+    if (!fs::exists(path, error)) return FileChange::Gone;
     try {
         RecordedFile now;
         addTimes(now, path);
@@ -211,10 +211,14 @@ std::string changeOf(const RecordedFile& recorded, const fs::path& path) {
             now.modifiedNs == recorded.modifiedNs && now.changedNs == recorded.changedNs;
         const bool isSame =
             now.bytes == recorded.bytes && (hasTimes || sha256OfFile(path) == recorded.sha256);
-        return isSame ? "" : "has changed";
+        return isSame ? FileChange::None : FileChange::Changed;
     } catch (const FileError&) {
-        return "has changed";  // can't be read
+        return FileChange::Changed;  // can't be read
     }
+}
+
+std::string changeText(FileChange change) {
+    return change == FileChange::Gone ? "is gone" : "has changed";
 }
 
 Json lineJson(const RunRecord& record) {

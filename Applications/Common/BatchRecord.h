@@ -46,9 +46,14 @@ bool hasTimes(const RecordedFile& recorded, const std::filesystem::path& input,
 /// Whether two descriptions are of the same content.
 bool isSameContent(const RecordedFile& a, const RecordedFile& b);
 
-/// "is gone", "has changed", or empty: the file at `path` is as recorded. Does not read a file of
-/// the recorded size and times (of content and of inode, which no program can put back).
-std::string changeOf(const RecordedFile& recorded, const std::filesystem::path& path);
+enum class FileChange { None, Gone, Changed };
+
+/// Compares the file at `path` with its record. Does not read a file of the recorded size and times
+/// (of content and of inode, which no program can put back).
+FileChange changeOf(const RecordedFile& recorded, const std::filesystem::path& path);
+
+/// "is gone", "has changed".
+std::string changeText(FileChange change);
 
 /// An option that shapes the result, with a checksum of its value, which may be a path.
 struct RecordedOption {

@@ -13,6 +13,7 @@
 #include "Common/Warnings.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/ParseJson.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -26,12 +27,9 @@ constexpr const char* kOutput = "--output";
 
 /// "closed, manifold" of what failed in a check, after `subject` if given.
 void addFailed(const Json& checked, const std::string& subject, std::string& text) {
-    std::string failed;
-    for (const Json& name : checked.value("failed", Json::array())) {
-        failed += (failed.empty() ? "" : ", ") + name.get<std::string>();
-    }
+    const std::string failed = joined(checked.value("failed", std::vector<std::string>()));
     if (failed.empty()) return;
-    text += (text.empty() ? "" : "; ") + (subject.empty() ? "" : subject + ": ") + failed;
+    addPart(text, (subject.empty() ? "" : subject + ": ") + failed, "; ");
 }
 
 std::string checkResult(const Json& report) {
@@ -51,9 +49,11 @@ std::string checkResult(const Json& report) {
 std::string meshResult(const Json& report) {
     std::string text;
     for (const Json& surface : report.value("surfaces", Json::array())) {
-        text += (text.empty() ? "" : "; ") + surface.at("output").at("file").get<std::string>() +
-                ", " + formatCount(wholeNumber<std::int64_t>(surface.at("triangles"))) +
-                " triangles at " + formatShort(surface.at("isovalue").get<double>());
+        addPart(text,
+                surface.at("output").at("file").get<std::string>() + ", " +
+                    formatCount(wholeNumber<std::int64_t>(surface.at("triangles"))) +
+                    " triangles at " + formatShort(surface.at("isovalue").get<double>()),
+                "; ");
     }
     return text;
 }
@@ -318,7 +318,7 @@ private:
             std::error_code error;
             // neither another folder's file nor one of an annex, which is for reading
             if (!linkFaultOf({path}, run.item.folder).empty()) continue;
-            if (!changeOf(output, path).empty()) continue;
+            if (changeOf(output, path) != FileChange::None) continue;
             fs::remove(path, error);
             for (fs::path folder = path.parent_path(); folder != run.item.folder && !error;
                  folder = folder.parent_path()) {
@@ -519,8 +519,8 @@ std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record) {
                 return extra.first == output.option;
             });
         const fs::path path = run.item.folder / output.file;
-        const std::string change = isAsked ? changeOf(output, path) : "";
-        if (!change.empty()) return path.filename().string() + " " + change;
+        const FileChange change = isAsked ? changeOf(output, path) : FileChange::None;
+        if (change != FileChange::None) return path.filename().string() + " " + changeText(change);
     }
     return {};
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "Common/CommonOptions.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -103,7 +104,7 @@ std::string rowText(const SummaryRow& row, const fs::path& page, const Columns& 
     constexpr std::size_t kMostFiles = 12;
     for (std::size_t n = 0; n < std::min(kMostFiles, row.outputs.size()); ++n) {
         const fs::path& output = row.outputs[n];
-        files += (files.empty() ? "" : "<br>") + anchor(output, output.filename().string(), page);
+        addPart(files, anchor(output, output.filename().string(), page), "<br>");
     }
     if (row.outputs.size() > kMostFiles) {
         files += "<br>and " + std::to_string(row.outputs.size() - kMostFiles) + " more";
@@ -151,10 +152,10 @@ std::string verdictOf(const std::vector<SummaryRow>& rows) {
 std::string changesOf(const RunRecord& record, const fs::path& folder) {
     std::string changes;
     const auto add = [&](const RecordedFile& file, const fs::path& path, const char* since) {
-        std::string change = changeOf(file, path);
-        if (change.empty()) return;
-        if (change == "has changed") change += std::string(" since it was ") + since;
-        changes += (changes.empty() ? "" : "; ") + path.filename().string() + " " + change;
+        const FileChange change = changeOf(file, path);
+        if (change == FileChange::None) return;
+        addPart(changes, path.filename().string() + " " + changeText(change), "; ");
+        if (change == FileChange::Changed) changes += std::string(" since it was ") + since;
     };
     for (const RecordedFile& input : record.inputs) {
         if (!input.place.empty()) add(input, folder / input.place, "read");
@@ -170,7 +171,7 @@ std::string changesOf(const RunRecord& record, const fs::path& folder) {
 SummaryRow summaryRow(const fs::path& file, const RunRecord& record) {
     const fs::path folder = detail::folderOf(file);
     SummaryRow row{record.program, record.name};
-    for (const std::string& name : record.files) row.file += (row.file.empty() ? "" : ", ") + name;
+    row.file = joined(record.files);
     row.seconds = record.seconds;
     row.date = record.date;
     if (!record.hasEnded) {

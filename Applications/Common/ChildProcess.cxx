@@ -16,8 +16,8 @@
 #include <system_error>
 #include <utility>
 
-#include "Common/AtomicOutput.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso {
 namespace {

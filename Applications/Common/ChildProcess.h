@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "Common/AtomicOutput.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "Common/Naming.h"  // IWYU pragma: export
-#include "Common/Progress.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Json/Json.h"  // IWYU pragma: export
+#include "adaptiso/Json/Json.h"         // IWYU pragma: export
+#include "adaptiso/Json/SecondsJson.h"  // IWYU pragma: export
 
 namespace adaptiso {
 
@@ -27,14 +27,6 @@ inline Json inputCoordinatesJson(const std::vector<CoordinateFrame>& stated) {
     Json words = Json::array();
     for (const CoordinateFrame frame : stated) words.push_back(frameWord(frame));
     return words;
-}
-
-/// `seconds` of a report: every stage, and their total.
-inline Json secondsJson(const StageTimer& timer) {
-    Json seconds = Json::object();
-    for (const auto& [stage, time] : timer.stages()) seconds[stage] = time;
-    seconds["total"] = timer.total();
-    return seconds;
 }
 
 }  // namespace adaptiso

@@ -9,6 +9,7 @@
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -117,7 +118,7 @@ Preprocessed preprocessImage(Volume volume, const PreprocessOptions& options,
 
 std::string preprocessingText(const PreprocessOptions& options, const Index3& size) {
     std::string text;
-    const auto add = [&](const std::string& step) { text += (text.empty() ? "" : ", ") + step; };
+    const auto add = [&](const std::string& step) { addPart(text, step); };
     if (options.crop) {
         std::string ranges;
         for (std::size_t axis = 0; axis < size.size(); ++axis) {

@@ -8,6 +8,7 @@
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -125,11 +126,6 @@ void ProgramRun::printEnd(std::ostream& out, const AtomicFolder* folder) const {
     if (hasPage) toDo.push_back("open " + shellQuoted(report_.page.string()) + " in a browser");
     if (written.empty() && toDo.empty()) return;
     constexpr std::size_t kMostNames = 4;
-    const auto joined = [](const std::vector<std::string>& texts, const std::string& between) {
-        std::string text;
-        for (const std::string& each : texts) text += (text.empty() ? "" : between) + each;
-        return text;
-    };
     const std::size_t more = written.size() > kMostNames ? written.size() - kMostNames : 0;
     written.resize(written.size() - more);
     std::string line = written.empty() ? "" : "Wrote " + joined(written, ", ");

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "Common/AtomicOutput.h"
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/Progress.h"
@@ -18,6 +17,7 @@
 #include "Common/Verdict.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso {
 

@@ -10,12 +10,12 @@
 #include <new>
 #include <system_error>
 
-#include "Common/AtomicOutput.h"
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/Report/Page.h"
 
 namespace adaptiso {

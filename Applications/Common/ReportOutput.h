@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "Common/AtomicOutput.h"
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/Report/Page.h"
 #include "adaptiso/Report/Report.h"  // IWYU pragma: export
 

@@ -16,12 +16,12 @@
 #include <streambuf>
 #include <string_view>
 
-#include "Common/AtomicOutput.h"
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/UsageWords.h"
 #include "Common/Verdict.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso {
 namespace {

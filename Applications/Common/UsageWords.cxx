@@ -6,6 +6,7 @@
 
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
+#include "adaptiso/Core/Phrases.h"
 
 namespace adaptiso {
 namespace {
@@ -104,7 +105,7 @@ std::string positionals(const CLI::App& app) {
     std::string text;
     for (const CLI::Option* option : app.get_options()) {
         if (!option->get_lnames().empty() || !option->get_snames().empty()) continue;
-        text += (text.empty() ? "" : " and ") + option->get_name(true);
+        addPart(text, option->get_name(true), " and ");
     }
     return text;
 }

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "Common/AtomicOutput.h"
 #include "Common/Json.h"
 #include "Common/Mesher.h"
 #include "Common/Naming.h"
@@ -14,6 +13,7 @@
 #include "Run.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/HeadModel/Tetrahedra.h"
 #include "adaptiso/HeadPipeline/BemElectrodes.h"
 #include "adaptiso/HeadPipeline/BemReport.h"

@@ -13,6 +13,7 @@
 #include "QualityTable.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/ParseJson.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::bids {
@@ -481,8 +482,10 @@ std::vector<SummaryRow> pageRows(const std::vector<DatasetStatus::Entry>& entrie
         for (const auto end = row + std::ssize(entry.rows); row != end; ++row) {
             if (row->outliers.empty()) continue;
             if (line.state == RunState::Done) line.state = RunState::Unusual;
-            line.says += (line.says.empty() ? "" : "; ") + std::string("unlike the others: ") +
-                         (row->part.empty() ? "" : row->part + " ") + row->outliers;
+            addPart(line.says,
+                    std::string("unlike the others: ") +
+                        (row->part.empty() ? "" : row->part + " ") + row->outliers,
+                    "; ");
         }
     }
     std::ranges::stable_sort(lines, {}, &SummaryRow::state);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextCells.h"
 
@@ -89,9 +90,11 @@ void markOutliers(std::vector<QualityRow>& rows, double limit, double leastPerce
                 const double percent = 100 * (*values[m] - median) / std::abs(median);
                 if (std::abs(percent) < leastPercent) continue;
                 std::string& marks = rows[members[m]].outliers;
-                marks += (marks.empty() ? "" : ",") + std::string(kColumns[k].name) +
-                         (*scores[m] > 0 ? ":+" : ":-") + formatFixed(std::abs(*scores[m]), 1) +
-                         (percent > 0 ? "(+" : "(-") + percentText(percent) + ")";
+                addPart(marks,
+                        std::string(kColumns[k].name) + (*scores[m] > 0 ? ":+" : ":-") +
+                            formatFixed(std::abs(*scores[m]), 1) + (percent > 0 ? "(+" : "(-") +
+                            percentText(percent) + ")",
+                        ",");
             }
         }
     }

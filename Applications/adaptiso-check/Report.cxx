@@ -14,6 +14,7 @@
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "Run.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Json/OptionsJson.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
@@ -130,8 +131,7 @@ void printFacts(std::ostream& out, const SurfaceFacts& facts) {
     const auto genus = facts.topology.genus();
     out << "  area " << formatMeasure(facts.areaMm2) << " mm2";
     if (facts.volumeMm3) out << ", volume " << formatMeasure(*facts.volumeMm3) << " mm3";
-    out << ", " << formatCount(std::ssize(facts.topology.components)) << " component"
-        << (facts.topology.components.size() == 1 ? "" : "s");
+    out << ", " << counted(std::ssize(facts.topology.components), "component");
     if (genus) out << ", genus " << *genus;
     out << '\n';
     if (facts.shape.triangles == 0) return;
@@ -143,14 +143,11 @@ void printFacts(std::ostream& out, const SurfaceFacts& facts) {
 
 /// "144.0 x 180.2 x 152.1 mm, 1 shell, 2 handles, thinnest wall 0.42 mm"
 std::string printText(const SurfaceFacts& facts) {
-    const auto counted = [](std::int64_t count, const std::string& what) {
-        return formatCount(count) + what + (count == 1 ? "" : "s");
-    };
     const Vec3& size = facts.size.extentMm;
     std::string text = formatFixed(size.x, 1) + " x " + formatFixed(size.y, 1) + " x " +
                        formatFixed(size.z, 1) + " mm, " +
-                       counted(std::ssize(facts.topology.components), " shell");
-    if (const auto genus = facts.topology.genus()) text += ", " + counted(*genus, " handle");
+                       counted(std::ssize(facts.topology.components), "shell");
+    if (const auto genus = facts.topology.genus()) text += ", " + counted(*genus, "handle");
     if (!facts.walls || !facts.walls->hasWall()) return text;
     return text + ", thinnest wall " + wallText(*facts.walls);
 }
@@ -221,8 +218,8 @@ void addVerdict(const CheckRun& run, Report& report) {
         return;
     }
     if (failures > 0) {
-        report.headline = formatCount(failures) + (failures == 1 ? " check" : " checks") +
-                          " that the profile \"" + profile + "\" requires failed.";
+        report.headline =
+            counted(failures, "check") + " that the profile \"" + profile + "\" requires failed.";
     }
     if (unreadable > 0) {
         report.headline += std::string(report.headline.empty() ? "" : " ") +

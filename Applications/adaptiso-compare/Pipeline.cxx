@@ -15,6 +15,7 @@
 #include "Common/RunApp.h"
 #include "Run.h"
 #include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/PortableMath.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -168,8 +169,7 @@ void warnOfRough(CompareRun& run) {
     const auto warn = [&](std::int64_t points, const std::string& why) {
         if (points == 0) return;
         run.warnings.push_back(
-            {"distance-rough",
-             formatCount(points) + (points == 1 ? " point lies" : " points lie") + why});
+            {"distance-rough", counted(points, "point lies", "points lie") + why});
     };
     warn(distances.rough.rough,
          " about as far from more than 100 triangles each: distances there may be a hundredth too "

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "Common/ProgramRun.h"
-#include "Common/SurfaceSize.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
@@ -19,6 +18,7 @@
 #include "adaptiso/MeshQuality/LabelCentres.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/Report/Report.h"
+#include "adaptiso/SurfaceChecks/SurfaceSize.h"
 
 namespace adaptiso::compare {
 

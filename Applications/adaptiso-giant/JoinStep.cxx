@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <ostream>
 
-#include "Common/AtomicOutput.h"
 #include "Common/Json.h"
 #include "Common/ProgramRun.h"
 #include "Common/RunApp.h"
@@ -10,6 +9,7 @@
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/Report/Page.h"

@@ -6,7 +6,6 @@
 #include <ostream>
 
 #include "BorderFront.h"
-#include "Common/AtomicOutput.h"
 #include "Common/Json.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
@@ -15,6 +14,7 @@
 #include "Steps.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/ImageIO/ImageRegions.h"
 
 namespace adaptiso::giant {

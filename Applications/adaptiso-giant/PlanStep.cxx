@@ -2,7 +2,6 @@
 #include <cmath>
 #include <ostream>
 
-#include "Common/AtomicOutput.h"
 #include "Common/ImageOptions.h"
 #include "Common/Json.h"
 #include "Common/RunApp.h"
@@ -12,6 +11,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/ImageIO/ImageRegions.h"
 
 namespace adaptiso::giant {

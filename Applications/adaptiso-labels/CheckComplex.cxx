@@ -4,11 +4,13 @@
 
 #include "Regions.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshQuality/LabelCentres.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/MeshQuality/Winding.h"
+#include "adaptiso/SurfacePipeline/Verification.h"
 
 namespace adaptiso::labels {
 namespace {
@@ -29,23 +31,20 @@ std::string faultOf(const TriangleMesh& mesh, const TopologyReport& topology,
         return "has " + formatCount(topology.defects[n]) + " x " + std::string(toString(defect));
     }
     double volume = 0;
-    std::int64_t euler = 0;
     for (const SurfaceComponent& component : topology.components) {
         volume += component.signedVolumeMm3;
-        euler += component.eulerCharacteristic();
     }
     if (!(volume > 0)) return "faces inward";
     const auto pieces = findInsideOutPieces(mesh, topology);
     if (!pieces) return "has too many pieces within or across each other to check their sides";
     if (!pieces->empty()) {
         const std::int64_t insideOut = std::ssize(*pieces);
-        return "has " + formatCount(insideOut) + (insideOut == 1 ? " piece" : " pieces") +
-               " inside out";
+        return "has " + counted(insideOut, "piece") + " inside out";
     }
     const bool isMeasured = topology.triangles == measure.triangles &&
                             topology.vertices == measure.vertices &&
                             std::ssize(topology.components) == measure.components &&
-                            euler == measure.eulerCharacteristic;
+                            eulerCharacteristic(topology) == measure.eulerCharacteristic;
     return isMeasured ? "" : "is not as it was measured";
 }
 
@@ -117,9 +116,9 @@ LabelsCheck checkCentres(const LabelComplex& complex, const VolumeView& map, con
     check.isPassed = found.count == 0;
     if (check.isPassed) return check;
     const Index3& at = *found.first;
-    check.finding = formatCount(found.count) + (found.count == 1 ? " does" : " do") +
-                    " not, the first voxel (" + std::to_string(at[0]) + ", " +
-                    std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
+    check.finding = counted(found.count, "does", "do") + " not, the first voxel (" +
+                    std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " +
+                    std::to_string(at[2]) + ")";
     check.pointsMm.push_back(map.geometry().toPhysical(
         {static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])}));
     return check;

@@ -10,6 +10,7 @@
 
 #include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextCells.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -224,7 +225,7 @@ std::string regionsTable(const LabelsRun& run) {
         const RegionMeasure& measure = region.measure;
         std::string neighbours;
         for (const RegionContact& contact : measure.neighbours) {
-            neighbours += (neighbours.empty() ? "" : ",") + std::to_string(contact.label);
+            addPart(neighbours, std::to_string(contact.label), ",");
         }
         for (const std::string& each :
              {std::to_string(region.label), writtenCell(region.name),

@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "Common/AtomicOutput.h"
 #include "Regions.h"
 #include "Run.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/Labels/Labels.h"
 
 namespace adaptiso::labels {

@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "Common/AtomicOutput.h"
 #include "Common/Batch.h"
 #include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"
@@ -20,7 +19,9 @@
 #include "Run.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/ParseJson.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso::labels {
 namespace {
@@ -74,7 +75,7 @@ void warnOfMissing(const LabelMerge& merge, const LabelCensus& census, const std
         if (first != census.voxels.end() && first->first <= range.last) {
             isThere = true;
         } else {
-            missing += (missing.empty() ? "" : ", ") + toText(range);
+            addPart(missing, toText(range));
         }
     }
     if (!isThere) {
@@ -172,7 +173,7 @@ std::string failureText(const LabelsRun& run) {
     std::string text;
     for (const LabelsCheck& check : run.checks) {
         if (check.isPassed) continue;
-        text += (text.empty() ? "" : "; ") + check.name + ": " + check.finding;
+        addPart(text, check.name + ": " + check.finding, "; ");
     }
     return text;
 }

@@ -5,14 +5,15 @@
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
-#include "Common/LabelsJson.h"
 #include "Common/ReportOutput.h"
 #include "Common/RunApp.h"
 #include "Regions.h"
 #include "Run.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/TetrahedraJson.h"
 #include "adaptiso/Json/OptionsJson.h"
+#include "adaptiso/SurfacePipeline/LabelsJson.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::labels {
@@ -120,9 +121,6 @@ Json sharedJson(const LabelsRun& run) {
 }
 
 /// "1 region", "3 regions"
-std::string counted(std::int64_t count, const std::string& what) {
-    return formatCount(count) + " " + what + (count == 1 ? "" : "s");
-}
 
 void printWalls(std::ostream& out, const LabelsRun& run) {
     const LabelStatistics& statistics = run.statistics;
@@ -176,8 +174,7 @@ void addInputs(const LabelsRun& run, Report& report) {
     report.inputs = imageFacts(baseName(run.options.input), map.format, map.geometry);
     report.inputs.push_back(
         {"Labels", formatCount(map.labels) + " (" + std::string(toString(map.pixelType)) + ")"});
-    std::string names;
-    for (const std::string& file : run.names.files) names += (names.empty() ? "" : ", ") + file;
+    const std::string names = joined(run.names.files);
     report.inputs.push_back(
         {"Names", names.empty() ? "none found" : names + " (" + run.names.format + ")"});
 }
@@ -188,18 +185,10 @@ void addOptions(const LabelsRun& run, Report& report) {
         report.options.push_back({name, value});
     };
     if (!options.labels.empty()) {
-        std::string list;
-        for (const LabelRange& range : options.labels) {
-            list += (list.empty() ? "" : ", ") + toText(range);
-        }
-        add("Regions asked for", list);
+        add("Regions asked for", joined(options.labels, toText));
     }
     for (const LabelMerge& merge : options.merges) {
-        std::string list;
-        for (const LabelRange& range : merge.labels) {
-            list += (list.empty() ? "" : ", ") + toText(range);
-        }
-        add("Merged", merge.name + " = " + list);
+        add("Merged", merge.name + " = " + joined(merge.labels, toText));
     }
     const LabelStatistics& statistics = run.statistics;
     add("Triangles", formatCount(run.triangles) + " in walls stored once; " +

@@ -25,6 +25,7 @@
 #include "Common/Warnings.h"
 #include "InfoPage.h"
 #include "Run.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Core/Warning.h"
@@ -187,14 +188,8 @@ ImageInfo gather(const MeshOptions& options, ProgressLine& progress) {
     return info;
 }
 
-std::string joined(const Vec3& v, const std::string& separator) {
+std::string vectorText(const Vec3& v, const std::string& separator) {
     return formatShort(v.x) + separator + formatShort(v.y) + separator + formatShort(v.z);
-}
-
-std::string joined(const std::vector<double>& values) {
-    std::string text;
-    for (const double value : values) text += (text.empty() ? "" : ", ") + formatShort(value);
-    return text;
 }
 
 /// A bar of up to 40 signs, as long as the logarithm of the count.
@@ -237,13 +232,13 @@ void printAxes(std::ostream& out, const ImageGeometry& geometry) {
     const char* const names[] = {"i", "j", "k"};
     for (int axis = 0; axis < 3; ++axis) {
         out << (axis == 0 ? "axes        " : "            ") << names[axis] << " along "
-            << joined(normalized(geometry.indexToPhysical.column[axis]), ", ") << " (to "
+            << vectorText(normalized(geometry.indexToPhysical.column[axis]), ", ") << " (to "
             << axes.orientation[static_cast<std::size_t>(axis)] << ")\n";
     }
     out << "            " << (geometry.isMirrored() ? "left-handed (mirrored)" : "right-handed");
     if (axes.isSheared()) {
         out << "; sheared: k is tilted by " << formatFixed(axes.tiltDeg, 2)
-            << " degrees, angles jk, ki, ij are " << joined(axes.anglesDeg, ", ");
+            << " degrees, angles jk, ki, ij are " << vectorText(axes.anglesDeg, ", ");
     } else {
         out << "; at right angles";
     }
@@ -267,7 +262,7 @@ void printValues(std::ostream& out, const ValueSummary& values, bool isInteger) 
     out << '\n';
     for (const std::vector<double>& thresholds : values.otsu) {
         out << (thresholds.size() == 1 ? "Otsu        " : "            ") << thresholds.size() + 1
-            << " classes: " << joined(thresholds) << '\n';
+            << " classes: " << joined(thresholds, formatShort) << '\n';
     }
     if (values.histogram) printHistogram(out, *values.histogram, isInteger);
 }
@@ -373,10 +368,10 @@ void printInfo(std::ostream& out, const MeshOptions& options, const ImageInfo& i
     }
     out << "size        " << size[0] << " x " << size[1] << " x " << size[2] << " voxels, "
         << toString(info.pixelType) << ", " << formatShort(bytes / 1e6) << " MB\n";
-    out << "spacing     " << joined(spacing, " x ") << " mm, voxels of "
+    out << "spacing     " << vectorText(spacing, " x ") << " mm, voxels of "
         << formatShort(geometry.voxelVolumeMm3()) << " mm3\n";
     out << "frame       LPS mm: x to the left, y to the back, z up\n";
-    out << "origin      " << joined(geometry.originMm, ", ") << " (the first voxel's centre)\n";
+    out << "origin      " << vectorText(geometry.originMm, ", ") << " (the first voxel's centre)\n";
     printAxes(out, geometry);
     printValues(out, info.values, isInteger(info.pixelType));
     for (const std::string& refusal : info.refusals) out << "refused     " << refusal << '\n';

@@ -15,6 +15,7 @@
 #include "Common/UsageWords.h"
 #include "Common/Warnings.h"
 #include "Run.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
@@ -271,7 +272,7 @@ std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
     const std::int64_t count = surface.insideOutPieces.value_or(0);
     if (count == 0) return std::nullopt;
     return Warning{"pieces-inside-out",
-                   formatCount(count) + (count == 1 ? " piece is" : " pieces are") +
+                   counted(count, "piece is", "pieces are") +
                        " inside out; the method adaptive keeps all facing outward",
                    surface.file.filename().string()};
 }

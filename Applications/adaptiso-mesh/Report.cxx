@@ -9,6 +9,7 @@
 #include "Common/ReportOutput.h"
 #include "Common/RunApp.h"
 #include "Run.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
@@ -58,11 +59,6 @@ Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
     return json;
 }
 
-/// "1 piece", "3 pieces".
-std::string counted(std::int64_t count, const std::string& what) {
-    return formatCount(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 /// "1 piece", "3 pieces, 12,718 cavities".
 std::string piecesText(const TopologyReport& topology) {
     const std::int64_t cavities = std::ranges::count_if(
@@ -70,7 +66,7 @@ std::string piecesText(const TopologyReport& topology) {
         [](const SurfaceComponent& c) { return c.isClosed() && !c.isOutward(); });
     const std::string pieces = counted(std::ssize(topology.components) - cavities, "piece");
     if (cavities == 0) return pieces;
-    return pieces + ", " + formatCount(cavities) + (cavities == 1 ? " cavity" : " cavities");
+    return pieces + ", " + counted(cavities, "cavity", "cavities");
 }
 
 void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& surface) {
@@ -141,11 +137,10 @@ void addVerdict(const MeshRun& run, Report& report) {
          : insideOut == 0 ? ", closed and facing outward"
                           : ", closed, " + formatCount(insideOut) +
                                 (insideOut == 1 ? " piece" : " pieces") + " inside out");
-    report.headline += !isKnown ? "; crossings were not looked for."
-                       : crossings == 0
-                           ? "; no triangle crosses another."
-                           : "; " + formatCount(crossings) + (crossings == 1 ? " pair" : " pairs") +
-                                 " of triangles cross each other, see below.";
+    report.headline += !isKnown         ? "; crossings were not looked for."
+                       : crossings == 0 ? "; no triangle crosses another."
+                                        : "; " + counted(crossings, "pair") +
+                                              " of triangles cross each other, see below.";
 }
 
 void addInputs(const MeshRun& run, Report& report) {
@@ -183,9 +178,7 @@ void addFindings(const SurfaceSummary& surface, Report& report) {
                                   " edges at the image's border");
     if (const auto count = surface.insideOutPieces) {
         add("facing outward", *count == 0,
-            *count == 0 ? ""
-                        : formatCount(*count) + (*count == 1 ? " piece is" : " pieces are") +
-                              " inside out");
+            *count == 0 ? "" : counted(*count, "piece is", "pieces are") + " inside out");
     }
     if (!surface.crossingPairs) return;
     add("no self-intersection", *surface.crossingPairs == 0,

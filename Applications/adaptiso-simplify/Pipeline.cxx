@@ -11,6 +11,7 @@
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "Run.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
@@ -165,7 +166,7 @@ std::vector<const PointArray*> heldArrays(const MeshFile& input, SimplifyRun& ru
         if (format.holdsPointArrays || (format.holdsColors && isFirstColor)) {
             held.push_back(&array);
         } else {
-            others += (others.empty() ? "" : ", ") + array.name;
+            addPart(others, array.name);
         }
     }
     if (!others.empty()) {
@@ -270,7 +271,7 @@ void finish(Simplified result, const MeshFile& input, const std::vector<PointDat
 std::string refusal(const SimplifyRun& run) {
     std::string text;
     for (const Finding& finding : run.findings) {
-        if (finding.isFault) text += (text.empty() ? "" : "; ") + finding.text();
+        if (finding.isFault) addPart(text, finding.text(), "; ");
     }
     return baseName(run.input.file) +
            ": is not sound, as --require-sound asks for, so no surface was written: " + text;

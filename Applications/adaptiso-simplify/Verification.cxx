@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,21 +7,13 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
-#include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/MeshQuality/Winding.h"
 
 namespace adaptiso::simplifier {
 namespace {
 
-constexpr double kRounding = 1e-9;    // of the bound: sums of distances
-constexpr double kMeasuring = 1e-14;  // of the surface's extent: what distances are measured to
-
-std::int64_t eulerCharacteristic(const TopologyReport& topology) {
-    std::int64_t sum = 0;
-    for (const auto& component : topology.components) sum += component.eulerCharacteristic();
-    return sum;
-}
+constexpr const char* kBroken = "the surface breaks its promise: ";
 
 SelfIntersections crossingPairs(const TriangleMesh& mesh) {
     return findSelfIntersections(mesh, {.maxPairs = 0});
@@ -45,11 +36,7 @@ std::string topologyFault(const TopologyReport& before, const TopologyReport& to
     if (!isManifoldSurface(before)) return {};
     if (!isManifoldSurface(topology)) return "it is no oriented 2-manifold";
     if (before.isClosed() != topology.isClosed()) return "it is not closed as the input is";
-    if (before.components.size() != topology.components.size() ||
-        eulerCharacteristic(before) != eulerCharacteristic(topology)) {
-        return "its pieces or holes are not the input's";
-    }
-    return {};
+    return hasSameShape(before, topology) ? "" : "its pieces or holes are not the input's";
 }
 
 std::int64_t insideOutPieces(const TriangleMesh& mesh, const TopologyReport& topology) {
@@ -85,16 +72,6 @@ TriangleMesh withArea(const TriangleMesh& input) {
     return mesh;
 }
 
-/// The largest absolute coordinate, or the box's diagonal where that is more.
-double extentOf(const TriangleMesh& mesh) {
-    const BoundingBox box = boundingBox(mesh);
-    return std::max({norm(box.minimum), norm(box.maximum), norm(box.maximum - box.minimum)});
-}
-
-[[noreturn]] void fail(const std::string& what) {
-    throw InternalError("the surface breaks its promise: " + what);
-}
-
 }  // namespace
 
 void verify(const VerifiedSurface& surface, SimplifyRun& run) {
@@ -103,23 +80,15 @@ void verify(const VerifiedSurface& surface, SimplifyRun& run) {
     if (!fault.empty()) {
         const std::string own =
             soundnessFault(surface, surface.result, checkTopology(surface.result), run);
-        if (!own.empty()) fail(own);
+        if (!own.empty()) throw InternalError(kBroken + own);
         throw InvalidInput(baseName(run.output.file) + ": " + std::string(run.output.format->name) +
                            " keeps too few digits of this surface's coordinates, with which " +
                            fault + "; write .vtp or .ply");
     }
     const TriangleMesh& input = surface.input;
-    const DistanceReport distance = surfaceDistance(
-        surface.written, run.statistics.degenerateTriangles == 0 ? input : withArea(input));
-    const double maxMm = distance.combined.maxMm;
-    double boundMm = (1 + kRounding) * run.statistics.errorBoundMm + surface.roundingMm +
-                     kMeasuring * extentOf(input);
-    if (maxMm > boundMm) boundMm += measuringErrorMm(surface.written) + measuringErrorMm(input);
-    if (!(maxMm <= boundMm)) {
-        fail("a point lies " + formatNumber(maxMm) + " mm from the input, not " +
-             formatNumber(boundMm));
-    }
-    run.verification = Verification{distance.combined.measured(), maxMm};
+    run.verification = verifyDistance(
+        surface.written, run.statistics.degenerateTriangles == 0 ? input : withArea(input),
+        run.statistics.errorBoundMm + surface.roundingMm, "the input", kBroken);
 }
 
 }  // namespace adaptiso::simplifier

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "Common/AtomicOutput.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 /// In the C library's place: NFS, 9p and FUSE know no flags.
 extern "C" int renameat2(int from, const char* old, int to, const char* made,

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "Common/AtomicOutput.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso {
 namespace {

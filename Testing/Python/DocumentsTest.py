@@ -1,5 +1,6 @@
 """The examples of the docstrings run, the docstrings are complete, and the types hold."""
 
+import ast
 import contextlib
 import doctest
 import importlib
@@ -59,6 +60,20 @@ class Docstrings(unittest.TestCase):
             text = inspect.getdoc(function)
             for parameter in inspect.signature(function).parameters:
                 self.assertRegex(text, rf"(?m)^[\w, ]*\b{parameter}\b", f"{function.__name__}")
+
+
+class Package(unittest.TestCase):
+    def test_no_module_imports_one_that_imports_it(self):
+        needed = {}
+        for file in (SOURCE / "adaptiso").glob("*.py"):
+            found = needed[file.stem] = set()
+            for node in ast.walk(ast.parse(file.read_text())):
+                if isinstance(node, ast.ImportFrom) and node.level == 1:
+                    found.update([node.module] if node.module else [each.name for each in node.names])
+        while free := [name for name, found in needed.items() if not found & needed.keys()]:
+            for name in free:
+                del needed[name]
+        self.assertEqual(needed, {})
 
 
 def blocks_of(page, *changes):

@@ -13,6 +13,7 @@
 #include "FileFault.h"
 #include "HeaderText.h"
 #include "Samples.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/TextLines.h"
 
 namespace adaptiso::detail {
@@ -303,7 +304,7 @@ std::string volumesNameOf(const NrrdHeader& header) {
         const auto layer = header.pairs.find(prefix + "Layer");
         if (name == header.pairs.end() || layer == header.pairs.end()) break;
         std::string& names = layers[parseInteger(layer->second).value_or(0)];
-        names += (names.empty() ? "" : ", ") + printable(name->second);
+        addPart(names, printable(name->second));
     }
     if (layers.empty()) return "volumes";
     std::string text = "layers of segments that overlap (";

@@ -14,6 +14,7 @@
 #include "FileFault.h"
 #include "Samples.h"
 #include "ZarrStore.h"
+#include "adaptiso/Core/Phrases.h"
 
 namespace adaptiso::detail {
 namespace fs = std::filesystem;
@@ -185,12 +186,9 @@ ZarrEncoding encodingOf(const fs::path& file, const ZarrJson& codecs, std::size_
 /// "bytes, gzip"
 std::string shownCodecs(const ZarrJson& codecs) {
     if (!codecs.is_array() || codecs.empty()) return shownJson(codecs);
-    std::string text;
-    for (const ZarrJson& codec : codecs) {
-        const ZarrJson& name = codec.is_object() ? memberOf(codec, "name") : codec;
-        text += (text.empty() ? "" : ", ") + shownJson(name);
-    }
-    return text;
+    return adaptiso::joined(codecs, [](const ZarrJson& codec) {
+        return shownJson(codec.is_object() ? memberOf(codec, "name") : codec);
+    });
 }
 
 /// The codecs of a shard's index: bytes, and crc32c or nothing.

@@ -9,6 +9,7 @@
 #include <new>
 
 #include "Rows.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextLines.h"
 
@@ -121,11 +122,7 @@ std::span<const LabelTableKind> labelTableKinds() {
 }
 
 std::string labelTableNames() {
-    std::string names;
-    for (const LabelTableKind& kind : kKinds) {
-        names.append(names.empty() ? "" : ", ").append(kind.name);
-    }
-    return names;
+    return joined(kKinds, [](const LabelTableKind& kind) { return kind.name; });
 }
 
 const LabelEntry* LabelTable::find(std::int32_t value) const {

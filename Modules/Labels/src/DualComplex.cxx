@@ -393,7 +393,7 @@ Label toLabel(T sample) {
         isLabel = std::in_range<Label>(sample);
     }
     if (!isLabel) {
-        throw InvalidInput("a label map holds whole numbers of 32 bits, this one " +
+        throw NotALabelMap("a label map holds whole numbers of 32 bits, this one " +
                            std::to_string(sample));
     }
     return static_cast<Label>(sample);

@@ -13,6 +13,7 @@
 #include "Codecs.h"
 #include "Counts.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 
@@ -560,8 +561,7 @@ MeshFile decodeFiff(std::string_view bytes, const MeshReadOptions& options) {
     const fiff::Content content = fiff::decode(bytes);
     std::vector<FiffSurface> surfaces = insideOut(surfacesIn(content));
     const std::vector<std::string> names = namesOf(surfaces);
-    std::string list;
-    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    const std::string list = joined(names);
     if (!options.part.empty()) {
         const auto at = std::ranges::find(names, options.part) - names.begin();
         if (at == std::ssize(names)) {

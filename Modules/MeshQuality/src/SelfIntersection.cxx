@@ -5,6 +5,7 @@
 
 #include "Triangles.h"
 #include "adaptiso/Core/Geometry.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {

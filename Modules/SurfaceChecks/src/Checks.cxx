@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshQuality/Winding.h"
 
@@ -233,11 +234,6 @@ std::string at(const Vec3& p) {
     return formatFixed(p.x, 2) + ", " + formatFixed(p.y, 2) + ", " + formatFixed(p.z, 2);
 }
 
-/// "1 edge", "1,234 edges"
-std::string counted(std::int64_t count, const std::string& one, const std::string& many) {
-    return formatCount(count) + ' ' + (count == 1 ? one : many);
-}
-
 /// "triangle 3", "vertices 4, 5"
 std::string named(const TopologyExample& example) {
     if (example.triangle >= 0) return "triangle " + std::to_string(example.triangle);
@@ -362,16 +358,15 @@ private:
     void judgePieces() {
         const std::int64_t components = std::ssize(facts_.topology.components);
         addUnless(kOneComponent, components != 1,
-                  counted(components, "component", "components") + largestComponents());
+                  counted(components, "component") + largestComponents());
 
         const auto genus = facts_.topology.genus();
         if (!genus) {
             add(kGenus, Outcome::Undecided,
                 "only a closed, manifold and oriented surface has a genus");
         } else {
-            addUnless(
-                kGenus, *genus != 0,
-                "genus " + std::to_string(*genus) + ": " + counted(*genus, "handle", "handles"));
+            addUnless(kGenus, *genus != 0,
+                      "genus " + std::to_string(*genus) + ": " + counted(*genus, "handle"));
         }
     }
 
@@ -382,8 +377,7 @@ private:
         std::string kinds;
         if (repeated > 0) kinds += counted(repeated, "names", "name") + " a vertex twice";
         if (degenerate > repeated) {
-            kinds += (kinds.empty() ? "" : ", ") + counted(degenerate - repeated, "has", "have") +
-                     " zero area";
+            addPart(kinds, counted(degenerate - repeated, "has", "have") + " zero area");
         }
         addUnless(kDegenerate, degenerate > 0,
                   counted(degenerate, "degenerate triangle: ", "degenerate triangles: ") + kinds +

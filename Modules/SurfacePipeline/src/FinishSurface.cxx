@@ -4,6 +4,7 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/MeshQuality/Winding.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
@@ -18,8 +19,8 @@ std::string faultsOf(const TopologyReport& topology, Border border) {
         const auto defect = static_cast<TopologyDefect>(n);
         if (topology.count(defect) == 0) continue;
         if (border == Border::Open && defect == TopologyDefect::BoundaryEdge) continue;
-        faults += (faults.empty() ? "" : ", ") + std::string(toString(defect)) + ": " +
-                  std::to_string(topology.count(defect));
+        addPart(faults,
+                std::string(toString(defect)) + ": " + std::to_string(topology.count(defect)));
     }
     return faults;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -326,7 +327,7 @@ std::string textOf(const RoundingHarm& harm, const MeshFormat& format) {
     std::string what;
     const auto add = [&](std::int64_t count, const char* text) {
         if (count == 0) return;
-        what += (what.empty() ? "" : ", ") + formatCount(count) + text;
+        addPart(what, formatCount(count) + text);
     };
     add(harm.flatTriangles, " triangles would lose their area");
     add(harm.mergedPoints, " vertices would lie on another");

@@ -12,6 +12,7 @@
 
 #include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextLines.h"
 #include "adaptiso/Tetrahedra/Tetrahedra.h"
@@ -191,14 +192,11 @@ std::string gmshScript(const MesherInput& input, std::string_view wallsFile, dou
     std::int64_t number = 0;
     for (const MesherVolume& volume : input.volumes) {
         const std::string name = text(++number);
-        std::string walls;
-        for (const std::int32_t wall : volume.walls) {
-            walls += (walls.empty() ? "" : ", ") + text(wall);
-        }
-        script += "Surface Loop(" + name + ") = {" + walls + "};\nVolume(" + name + ") = {" + name +
-                  "};\n";
+        script += "Surface Loop(" + name + ") = {" +
+                  joined(volume.walls, [](std::int32_t wall) { return text(wall); }) +
+                  "};\nVolume(" + name + ") = {" + name + "};\n";
         std::string& list = volumesOf[volume.region];
-        list += (list.empty() ? "" : ", ") + name;
+        addPart(list, name);
     }
     for (const auto& [region, list] : volumesOf) {
         script += "Physical Volume(" + text(region) + ") = {" + list + "};\n";

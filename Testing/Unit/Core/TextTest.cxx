@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::testing {
@@ -19,6 +20,16 @@ TEST(Text, IsTrimmedLoweredAndEscaped) {
     EXPECT_EQ(trimmed(""), "");
     EXPECT_EQ(lowerCase("AZaz[@ \xc4"), "azaz[@ \xc4");
     EXPECT_EQ(escapedMarkup("a<b>&\"'\n\x1f\xc3\xa4"), "a&lt;b&gt;&amp;&quot;'  \xc3\xa4");
+}
+
+TEST(Phrases, ListAndCount) {
+    const std::vector<std::string> files{"a.nii", "b.nii"};
+    EXPECT_EQ(joined(files), "a.nii, b.nii");
+    EXPECT_EQ(joined(files, "; "), "a.nii; b.nii");
+    EXPECT_EQ(joined(std::vector<std::string>{}), "");
+    EXPECT_EQ(joined(std::vector{0.5, 2.0}, formatShort, " x "), "0.5 x 2");
+    EXPECT_EQ(counted(1, "piece"), "1 piece");
+    EXPECT_EQ(counted(12718, "cavity", "cavities"), "12,718 cavities");
 }
 
 TEST(Utf8, IsWhatItsStandardAllows) {  // RFC 3629, section 4

@@ -292,12 +292,8 @@ def labels(image: Any, *, labels: Optional[Iterable[Union[int, str]]] = None,
     samples = samples_of(image, affine, True)
     subject = samples.file or "image"
     with read_only(samples.user):
-        try:
-            data = _adaptiso.make_labels(samples.volume, aims, chosen, threads, progress, subject)
-        except Error as error:
-            if "whole numbers" not in str(error):
-                raise
-            raise Error(f"{error}; {_advice_on(samples)}") from None
+        data = _adaptiso.make_labels(samples.volume, aims, chosen, threads, progress, subject,
+                                     _advice_on(samples))
     if len(data.faces) == 0:
         raise Error(f"{subject}: holds no label: all voxels are 0")
     return LabelSurfaces(data, table)

@@ -162,7 +162,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         Needs Debian's python3-vtk9, or VTK from elsewhere."""
         from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-        from .vtk import fill
+        from ._vtk_data import fill
         data = vtkPolyData()
         fill(data, [self], None, True)
         return data

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "Calls.h"
-#include "Common/SurfaceSize.h"
 #include "MeshData.h"
 #include "OptionRows.h"
 #include "Words.h"
@@ -17,6 +16,7 @@
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SurfaceChecks/CheckJson.h"
+#include "adaptiso/SurfaceChecks/SurfaceSize.h"
 
 namespace adaptiso::python {
 namespace {

@@ -12,7 +12,6 @@
 
 #include "Arrays.h"
 #include "Calls.h"
-#include "Common/LabelsJson.h"
 #include "MeshData.h"
 #include "OptionRows.h"
 #include "Words.h"
@@ -21,6 +20,7 @@
 #include "adaptiso/Json/Json.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/SurfacePipeline/LabelsJson.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::python {
@@ -141,8 +141,10 @@ std::string LabelData::write(const std::string& path, std::optional<CoordinateFr
 namespace {
 
 /// \param subject  of messages: the file, or "image"
+/// \param advice   what may have made samples others than whole numbers
 std::shared_ptr<LabelData> makeLabels(const ArrayVolume& volume, LabelOptions options, int threads,
-                                      py::object progress, const std::string& subject) {
+                                      py::object progress, const std::string& subject,
+                                      const std::string& advice) {
     Watcher watcher(std::move(progress));
     options.progress = watcher.callback();
     std::shared_ptr<LabelData> data;
@@ -151,6 +153,8 @@ std::shared_ptr<LabelData> makeLabels(const ArrayVolume& volume, LabelOptions op
             LabelResult result = extractLabels(volume.view, options);
             watcher.tell("measure", 0);
             data = LabelData::fromLps(std::move(result), volume.geometry, options.labels);
+        } catch (const NotALabelMap& error) {
+            throw InvalidInput(subject + ": " + error.what() + "; " + advice);
         } catch (const InvalidInput& error) {
             throw InvalidInput(subject + ": " + error.what());
         }
@@ -233,14 +237,16 @@ void declareLabels(py::module_& module) {
     module.def(
         "make_labels",
         [](const ArrayVolume& volume, const py::dict& options, const std::vector<Label>& labels,
-           int threads, py::object progress, const std::string& subject) {
+           int threads, py::object progress, const std::string& subject,
+           const std::string& advice) {
             LabelOptions extraction;
             take(aimOptions(AimedSurface::Walls), extraction, options);
             extraction.labels = labels;
-            return makeLabels(volume, std::move(extraction), threads, std::move(progress), subject);
+            return makeLabels(volume, std::move(extraction), threads, std::move(progress), subject,
+                              advice);
         },
         py::arg("volume"), py::arg("options"), py::arg("labels"), py::arg("threads"),
-        py::arg("progress"), py::arg("subject"));
+        py::arg("progress"), py::arg("subject"), py::arg("advice"));
     module.def(
         "read_label_table",
         [](const std::string& path) {

@@ -15,9 +15,9 @@
 
 #include "Arrays.h"
 #include "Calls.h"
-#include "Common/AtomicOutput.h"
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/Json/Json.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"

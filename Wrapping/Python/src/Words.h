@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/Json/Json.h"
@@ -23,7 +24,7 @@ Value choose(const char* argument, const std::string& word,
     std::string words;
     for (const auto& [name, value] : choices) {
         if (word == name) return value;
-        words += (words.empty() ? "" : ", ") + std::string(name);
+        addPart(words, std::string(name));
     }
     throw InvalidInput(std::string(argument) + " '" + word + "': must be one of " + words);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/SimplifyAims.h"
 #include "adaptiso/Core/TriangleMesh.h"
@@ -17,6 +18,12 @@ namespace adaptiso {
 
 /// The number of a region of a label map. 0 is what lies outside of all regions.
 using Label = std::int32_t;
+
+/// A sample is no whole number that Label holds.
+class NotALabelMap : public InvalidInput {
+public:
+    using InvalidInput::InvalidInput;
+};
 
 /// The walls between the regions of a label map, each stored once: V points (LPS mm), T triangles.
 ///
@@ -79,7 +86,8 @@ struct LabelResult {
 ///
 /// \return  empty when all labels are 0.
 /// \pre  samples are whole numbers that Label holds; options as their comments say; options.labels
-///       are in the map                                          \throws InvalidInput otherwise
+///       are in the map                                          \throws InvalidInput otherwise,
+///       NotALabelMap for a sample
 /// Cost: time grows with the voxels (a scan) and with the area of the walls. The same input gives
 /// the same bytes, whatever the number of threads.
 LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options = {});

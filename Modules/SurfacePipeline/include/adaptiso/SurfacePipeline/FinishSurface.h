@@ -15,18 +15,13 @@
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/SurfacePipeline/Verification.h"
 
 namespace adaptiso {
 
 /// Why no surface lies at an isovalue: "no voxel reaches it", or that every voxel does; none when
 /// one may. \param range  of the volume's samples
 std::optional<std::string> isovalueFault(double isovalue, const ValueRange& range);
-
-/// Distances measured between a surface and the one at full resolution.
-struct Verification {
-    std::int64_t samples = 0;  ///< points at which distances were measured, both ways
-    double maxMm = 0;          ///< the largest of them
-};
 
 /// An isosurface's facts: how it was made, and what is checked of it as its file holds it.
 struct SurfaceRecord {

@@ -1,6 +1,6 @@
-#include <sys/resource.h>
+#include "adaptiso/Files/StageTimer.h"
 
-#include "Common/Progress.h"
+#include <sys/resource.h>
 
 namespace adaptiso {
 

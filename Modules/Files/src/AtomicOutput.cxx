@@ -1,4 +1,4 @@
-#include "Common/AtomicOutput.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

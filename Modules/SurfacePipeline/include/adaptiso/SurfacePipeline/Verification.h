@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshQuality/Topology.h"
+
+namespace adaptiso {
+
+/// Distances measured between a surface and the one that it was made from.
+struct Verification {
+    std::int64_t samples = 0;  ///< points at which distances were measured, both ways
+    double maxMm = 0;          ///< the largest of them
+};
+
+/// Sum over all components.
+std::int64_t eulerCharacteristic(const TopologyReport& topology);
+
+/// Same components and holes, as far as their numbers say.
+bool hasSameShape(const TopologyReport& a, const TopologyReport& b);
+
+/// Measures a surface that lies within `boundMm` of `original`, both ways, but for the rounding of
+/// coordinates and distances. \param name  of the original: "the input"
+/// \throws InternalError  "a point lies 0.3 mm from the input, not 0.2", after `begin`
+Verification verifyDistance(const TriangleMesh& surface, const TriangleMesh& original,
+                            double boundMm, const std::string& name, const std::string& begin);
+
+}  // namespace adaptiso

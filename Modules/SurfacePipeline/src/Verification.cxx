@@ -1,0 +1,46 @@
+#include "adaptiso/SurfacePipeline/Verification.h"
+
+#include <algorithm>
+
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
+
+namespace adaptiso {
+namespace {
+
+constexpr double kRounding = 1e-9;  // of the bound: sums of distances, coordinates in other frames
+constexpr double kMeasuring = 1e-14;  // of the surface's extent: what distances are measured to
+
+/// The largest absolute coordinate, or the box's diagonal where that is more.
+double extentOf(const TriangleMesh& mesh) {
+    const BoundingBox box = boundingBox(mesh);
+    return std::max({norm(box.minimum), norm(box.maximum), norm(box.maximum - box.minimum)});
+}
+
+}  // namespace
+
+std::int64_t eulerCharacteristic(const TopologyReport& topology) {
+    std::int64_t sum = 0;
+    for (const auto& component : topology.components) sum += component.eulerCharacteristic();
+    return sum;
+}
+
+bool hasSameShape(const TopologyReport& a, const TopologyReport& b) {
+    return a.components.size() == b.components.size() &&
+           eulerCharacteristic(a) == eulerCharacteristic(b);
+}
+
+Verification verifyDistance(const TriangleMesh& surface, const TriangleMesh& original,
+                            double boundMm, const std::string& name, const std::string& begin) {
+    const DistanceStatistics distance = surfaceDistance(surface, original).combined;
+    boundMm += kMeasuring * extentOf(original);
+    if (distance.maxMm > boundMm) boundMm += measuringErrorMm(surface) + measuringErrorMm(original);
+    if (!(distance.maxMm <= (1 + kRounding) * boundMm)) {
+        throw InternalError(begin + "a point lies " + formatNumber(distance.maxMm) + " mm from " +
+                            name + ", not " + formatNumber(boundMm));
+    }
+    return {distance.measured(), distance.maxMm};
+}
+
+}  // namespace adaptiso
