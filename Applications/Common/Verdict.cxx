@@ -17,12 +17,12 @@
 #include <utility>
 #include <vector>
 
-#include "Common/AtomicOutput.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Shortage.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso {
 namespace fs = std::filesystem;
@@ -109,6 +109,7 @@ void Verdict::failStrict(const CommonOptions& common, std::span<const Warning> w
     if (!failsStrict(common, warnings)) return;
     exitCode = kExitCheckFailed;
     error = strictFailure(common, warnings, consequence);
+    isReportAlone = false;
 }
 
 void Verdict::failReport(const std::string& failure) {
@@ -116,6 +117,7 @@ void Verdict::failReport(const std::string& failure) {
     if (failure.empty() || exitCode != kExitOk) return;
     exitCode = kExitCheckFailed;
     error = "the report failed: " + failure;
+    isReportAlone = true;
 }
 
 Json reportHead(const std::string& schema, const std::string& program, const Verdict& verdict,
@@ -129,10 +131,7 @@ Json reportHead(const std::string& schema, const std::string& program, const Ver
 }
 
 int printVerdict(const std::string& program, const Verdict& verdict, const std::string& written) {
-    const bool isReportAlone = verdict.error.ends_with(verdict.reportFailure);
-    if (!verdict.error.empty() && (verdict.reportFailure.empty() || !isReportAlone)) {
-        printError(program, verdict.error);
-    }
+    if (!verdict.error.empty() && !verdict.isReportAlone) printError(program, verdict.error);
     if (!verdict.reportFailure.empty()) {
         printError(program, written + "; the report failed: " + verdict.reportFailure);
     }

@@ -22,6 +22,7 @@ struct Verdict {
     std::string error{};
     bool isShortage = false;      ///< of memory, disk or processes: another try may pass
     std::string reportFailure{};  ///< why there is no page; empty: nothing failed
+    bool isReportAlone = false;   ///< nothing but the page failed: `error` says so
 
     /// --strict makes warnings failures, unless --allow lets them pass.
     /// \param consequence  as strictFailure() takes it

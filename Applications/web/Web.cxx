@@ -45,19 +45,30 @@ namespace adaptiso::web {
 using namespace mesher;  // Info.h
 namespace {
 
-/// The text that the function called last answers with: JSON, or a line that says why it failed.
+/// The JSON that the function called last answers with.
 std::string answer;
 
-/// Runs `work`, which sets `answer`. \return an exit code; other than 0, `answer` is the line that
-/// the program prints
+/// {line, volumes, hasSeries}: the line that the program prints, the volumes to choose from, and
+/// whether there are series to choose from.
+int refusing(const char* program, const ChoiceNeeded* choice) {
+    const Verdict verdict = verdictOf(std::current_exception());
+    const bool areVolumes = choice && choice->among() == ChoiceNeeded::Among::Volumes;
+    answer = jsonText({{"line", std::string(program) + ": " + oneLine(verdict.error)},
+                       {"volumes", areVolumes ? Json(choice->count()) : Json(nullptr)},
+                       {"hasSeries", choice && !areVolumes}},
+                      -1);
+    return verdict.exitCode;
+}
+
+/// Runs `work`, which sets `answer`. \return an exit code; other than 0, `answer` is refusing()'s
 int answering(const char* program, const std::function<void()>& work) {
     try {
         work();
         return kExitOk;
+    } catch (const ChoiceNeeded& choice) {
+        return refusing(program, &choice);
     } catch (...) {
-        const Verdict verdict = verdictOf(std::current_exception());
-        answer = std::string(program) + ": " + oneLine(verdict.error);
-        return verdict.exitCode;
+        return refusing(program, nullptr);
     }
 }
 

@@ -154,13 +154,13 @@ TEST_F(RecordedFilesTest, TellsGoneFromChanged) {
     const RecordedFile recorded = describeFile("a", file);
     EXPECT_EQ(recorded.bytes, 3u);
     EXPECT_EQ(recorded.sha256, kOfAbc);
-    EXPECT_EQ(changeOf(recorded, file), "");
+    EXPECT_EQ(changeOf(recorded, file), FileChange::None);
     put("a", "abcd");
-    EXPECT_EQ(changeOf(recorded, file), "has changed");
+    EXPECT_EQ(changeOf(recorded, file), FileChange::Changed);
     fs::remove(file);
-    EXPECT_EQ(changeOf(recorded, file), "is gone");
+    EXPECT_EQ(changeOf(recorded, file), FileChange::Gone);
     fs::create_directory(file);
-    EXPECT_EQ(changeOf(recorded, file), "has changed");
+    EXPECT_EQ(changeOf(recorded, file), FileChange::Changed);
 }
 
 TEST_F(RecordedFilesTest, NoticesAChangeThatPutsTheTimeBack) {
@@ -169,12 +169,12 @@ TEST_F(RecordedFilesTest, NoticesAChangeThatPutsTheTimeBack) {
     const RecordedFile recorded = describeFile("a", file);
     put("a", "abd");
     fs::last_write_time(file, time);
-    EXPECT_EQ(changeOf(recorded, file), "has changed");
+    EXPECT_EQ(changeOf(recorded, file), FileChange::Changed);
 }
 
 TEST_F(RecordedFilesTest, TakesACopyForTheSame) {
     const RecordedFile recorded = describeFile("a", put("a", "abc"));
-    EXPECT_EQ(changeOf(recorded, put("b", "abc")), "");
+    EXPECT_EQ(changeOf(recorded, put("b", "abc")), FileChange::None);
 }
 
 TEST_F(RecordedFilesTest, AFolderOfZarrIsItsHiddenMetadataToo) {

@@ -34,7 +34,7 @@ export interface RunResult {
   exitCode: 0 | 1;
   /** What --json writes; see the program's README. */
   report: Record<string, any>;
-  /** Warnings, a line each. */
+  /** The report's warnings, a line each: "t1.nii: ..."; their codes are in `report.warnings`. */
   warnings: string[];
   /** All files that the program wrote, but the report. */
   files: NamedFile[];

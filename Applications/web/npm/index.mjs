@@ -103,9 +103,10 @@ async function runReported(program, args, inputs, files, options) {
   const lines = done.stderr.split("\n").filter((line) => line !== "");
   if (done.exitCode > (mayFail ? 1 : 0)) throw new AdaptisoError(lines.at(-1) ?? `adaptiso-${program} failed`, done.exitCode);
   const report = writtenFile(program, done, kReport);
-  return { exitCode: done.exitCode, report: JSON.parse(new TextDecoder().decode(report.bytes)),
-    warnings: lines.filter((line) => /(warning|note): /.test(line)), files: done.files.filter((file) => file !== report),
-    memoryBytes: done.memoryBytes };
+  const json = JSON.parse(new TextDecoder().decode(report.bytes));
+  return { exitCode: done.exitCode, report: json,
+    warnings: json.warnings.map(({ file, text }) => (file === null ? text : `${file}: ${text}`)),
+    files: done.files.filter((file) => file !== report), memoryBytes: done.memoryBytes };
 }
 
 // NIfTI-1's numbers of sample types

@@ -129,8 +129,9 @@ void askWhatIsUsual(BemModel& model, const BemHooks& hooks) {
             std::string subject = bemSurfaceName(note.surface, model.meshes.size());
             if (note.next) subject += " in " + bemSurfaceName(*note.next, model.meshes.size());
             ToldNote told{std::move(note), std::move(subject), CoordinateFrame::Ras, {}};
+            told.isWarned = told.note.isNoted && !told.note.warning.empty();
             for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toRas(p));
-            if (told.note.isNoted && !told.note.warning.empty()) {
+            if (told.isWarned) {
                 model.warnings.push_back({std::string(told.note.warning),
                                           told.subject + ": " + told.note.finding + ", at " +
                                               rasText(told.note.pointsMm.front())});

@@ -50,13 +50,9 @@ Json notesJson(std::span<const ToldNote> notes) {
 void addNotes(std::span<const ToldNote> notes, Report& report) {
     for (const ToldNote& told : notes) {
         const HeadNote& note = told.note;
-        const bool isWarned =
-            note.isNoted && std::ranges::any_of(report.warnings, [&](const std::string& warning) {
-                return warning.find(told.subject + ": " + note.finding) != std::string::npos;
-            });
         report.checks.push_back({told.subject, std::string(note.name),
                                  note.isNoted ? ReportOutcome::Noted : ReportOutcome::Passed,
-                                 isWarned ? "see the warning" : note.finding});
+                                 told.isWarned ? "see the warning" : note.finding});
         if (!note.isNoted) continue;
         const auto places = std::ssize(note.pointsMm);
         for (std::int64_t n = 0; n < places; ++n) {

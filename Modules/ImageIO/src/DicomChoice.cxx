@@ -14,8 +14,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kChoose =
-    "choose one by its number (--series; adaptiso-mesh --list-series prints what is known of each)";
+/// \throws ChoiceNeeded
+[[noreturn]] void refuseSeries(const fs::path& input, const std::string& fault,
+                               const std::vector<DicomGroup>& groups) {
+    refuseChoice(input, fault,
+                 "choose one by its number (--series; adaptiso-mesh --list-series prints what is "
+                 "known of each)",
+                 ChoiceNeeded::Among::Series, std::ssize(groups));
+}
 
 std::string listOf(const std::vector<DicomGroup>& groups) {
     constexpr std::size_t kMost = 12;
@@ -55,13 +61,13 @@ std::size_t namedGroup(const fs::path& input, const std::vector<DicomGroup>& gro
         return static_cast<std::size_t>(std::ranges::find_if(groups, isNamed) - groups.begin());
     }
     if (named > 1) {
-        refuse(input,
-               fmt::format("the asked-for series holds {} groups of slices ({})", named,
-                           listOf(groups)),
-               kChoose);
+        refuseSeries(input,
+                     fmt::format("the asked-for series holds {} groups of slices ({})", named,
+                                 listOf(groups)),
+                     groups);
     }
-    refuse(input, fmt::format("the asked-for series is not one of these: {}", listOf(groups)),
-           kChoose);
+    refuseSeries(input, fmt::format("the asked-for series is not one of these: {}", listOf(groups)),
+                 groups);
 }
 
 /// "a SeriesInstanceUID": differs in each of three or more parallel slices. Empty if none does.
@@ -131,11 +137,11 @@ std::size_t chooseDicomGroup(const fs::path& input, const std::vector<DicomGroup
             continue;
         }
         if (isOnly && !group.fault.empty()) throw FileError(group.fault);
-        refuse(input,
-               fmt::format("holds {} groups of slices that differ in series, size, spacing, "
-                           "orientation, kind, patient or frame of reference ({})",
-                           groups.size(), listOf(groups)),
-               kChoose);
+        refuseSeries(input,
+                     fmt::format("holds {} groups of slices that differ in series, size, spacing, "
+                                 "orientation, kind, patient or frame of reference ({})",
+                                 groups.size(), listOf(groups)),
+                     groups);
     }
     return chosen;
 }

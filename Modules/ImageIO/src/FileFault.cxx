@@ -60,12 +60,25 @@ std::string number(double value) {
     return fmt::format("{:.7g}", value);
 }
 
+namespace {
+
+std::string lineOf(const fs::path& file, std::string_view fault, std::string_view remedy) {
+    return fmt::format("{}: {}; {}", displayName(file), fault, remedy);
+}
+
+}  // namespace
+
 void refuse(const fs::path& file, std::string_view fault, std::string_view remedy) {
-    throw FileError(fmt::format("{}: {}; {}", displayName(file), fault, remedy));
+    throw FileError(lineOf(file, fault, remedy));
+}
+
+void refuseChoice(const fs::path& file, std::string_view fault, std::string_view remedy,
+                  ChoiceNeeded::Among among, std::int64_t count) {
+    throw ChoiceNeeded(lineOf(file, fault, remedy), among, count);
 }
 
 void refuseShort(const fs::path& file, std::string_view fault, std::string_view remedy) {
-    throw Shortage(fmt::format("{}: {}; {}", displayName(file), fault, remedy));
+    throw Shortage(lineOf(file, fault, remedy));
 }
 
 void refuseForeignContent(const fs::path& file) {

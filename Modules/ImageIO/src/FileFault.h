@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "adaptiso/ImageIO/ReadVolume.h"
+
 namespace adaptiso::detail {
 
 /// Text from outside made fit for a message: control characters as \xNN, at most 80 characters.
@@ -19,6 +21,11 @@ std::string number(double value);
 /// \throws FileError "<file>: <fault>; <remedy>"
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view fault,
                          std::string_view remedy);
+
+/// \throws ChoiceNeeded  "<file>: <fault>; <remedy>"
+[[noreturn]] void refuseChoice(const std::filesystem::path& file, std::string_view fault,
+                               std::string_view remedy, ChoiceNeeded::Among among,
+                               std::int64_t count);
 
 /// The same for want of memory or processes. \throws Shortage
 [[noreturn]] void refuseShort(const std::filesystem::path& file, std::string_view fault,

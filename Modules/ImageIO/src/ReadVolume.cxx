@@ -161,12 +161,13 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
 /// \throws InvalidInput  an option of another format
 void requireOptionsOf(const std::string& format, const fs::path& input,
                       const ReadOptions& options) {
+    std::error_code error;
+    const bool hasChunks = fs::is_directory(input, error) && detail::isZarrFolder(input);
     const std::string is = input.string() + " is " + format;
     if (options.series && format != "DICOM") {
         throw InvalidInput("--series " + *options.series + ": " + is +
                            ", which has no series; leave --series out");
     }
-    const bool hasChunks = format.find("Zarr") != std::string::npos || format == "N5";
     const bool asksForChunks =
         options.level || options.channel || options.timePoint || options.refusesMissingChunks;
     if (asksForChunks && !hasChunks) {

@@ -35,12 +35,16 @@ std::uint64_t chosenIndex(const fs::path& root, const ZarrAxis& axis, std::uint6
                                                         : options.volumeIndex;
     const char* const option = isChannel ? "--channel" : isTime ? "--time" : "--volume-index";
     const char* const what = isChannel ? "channel" : isTime ? "time point" : "volume";
+    const bool isVolume = !isChannel && !isTime;
     if (!asked && extent == 1) return 0;
     if (!asked || *asked < 0 || static_cast<std::uint64_t>(*asked) >= extent) {
-        refuse(root,
-               asked ? fmt::format("there is no {} {}: it holds {}", what, *asked, extent)
-                     : fmt::format("holds {} {}s", extent, what),
-               fmt::format("choose one, 0 to {} ({})", extent - 1, option));
+        const std::string fault =
+            asked ? fmt::format("there is no {} {}: it holds {}", what, *asked, extent)
+                  : fmt::format("holds {} {}s", extent, what);
+        const std::string remedy = fmt::format("choose one, 0 to {} ({})", extent - 1, option);
+        if (!isVolume) refuse(root, fault, remedy);
+        refuseChoice(root, fault, remedy, ChoiceNeeded::Among::Volumes,
+                     static_cast<std::int64_t>(extent));
     }
     return static_cast<std::uint64_t>(*asked);
 }

@@ -313,6 +313,15 @@ TEST(DicomStrays, TwoVolumesAreForTheUserToChoose) {
     writeVolume(folder / "b", 4, "7.7");
     const std::string message = refusalOf(folder.path());
     EXPECT_NE(message.find("--series"), std::string::npos) << message;
+    for (const ReadOptions& options : {ReadOptions{}, ReadOptions{.series = "3"}}) {
+        try {
+            readVolume(folder.path(), options);
+            ADD_FAILURE();
+        } catch (const ChoiceNeeded& choice) {
+            EXPECT_EQ(choice.among(), ChoiceNeeded::Among::Series);
+            EXPECT_EQ(choice.count(), 2);
+        }
+    }
     EXPECT_EQ(slicesOf(readVolume(folder.path(), {.series = "2"})), 4);
     EXPECT_EQ(slicesOf(readVolume(folder.path(), {.series = "1.2.3.4"})), 3);
 }

@@ -129,6 +129,22 @@ TEST(VolumeIndex, MustBeGivenAndBeThere) {
     EXPECT_THROW(readVolume(file, indexed(1)), FileError);
 }
 
+TEST(VolumeIndex, ARefusalSaysHowManyThereAre) {
+    const TempFolder folder;
+    for (const Case& c : allCases()) {
+        const auto file = writeFile(folder / c.name, c.bytes);
+        for (const ReadOptions& options : {ReadOptions{}, indexed(3)}) {
+            try {
+                readVolume(file, options);
+                ADD_FAILURE() << c.name;
+            } catch (const ChoiceNeeded& choice) {
+                EXPECT_EQ(choice.among(), ChoiceNeeded::Among::Volumes) << c.name;
+                EXPECT_EQ(choice.count(), 3) << c.name;
+            }
+        }
+    }
+}
+
 TEST(VolumeIndex, LayersOfSegmentsAreNamed) {
     std::string bytes = nrrdVolumesFirst();
     bytes.insert(

@@ -90,6 +90,13 @@ describe("mesh", () => {
     const without = await mesh(ball(12), { iso: 100, triangles: 500 });
     assert.notDeepEqual(without.mesh.points, arrays.mesh.points);
   });
+  it("gives the report's warnings, a line each", async () => {
+    const bytes = nifti1(ball(12)), longer = new Uint8Array(bytes.length + 3);
+    longer.set(bytes);
+    const { report, warnings } = await mesh({ path: "ball.nii", bytes: longer }, { iso: 100, args: ["--no-warnings"] });
+    assert.deepEqual(report.warnings.map(({ code }) => code), ["trailing-bytes"]);
+    assert.deepEqual(warnings, [`ball.nii: ${report.warnings[0].text}`]);
+  });
   it("reads a File", async () => {
     near(volume((await mesh(new File([nifti1(ball(12))], "ball.nii"), { iso: 100 })).mesh), ballVolume(12), 0.03);
   });

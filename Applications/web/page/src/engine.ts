@@ -4,7 +4,8 @@ import type { InputFile, Message, OpenedImage, OpenedMesh, OpenRequest, Reply, R
 
 /** The line that the program would print, and its exit code. */
 export class Refused extends Error {
-  constructor(readonly line: string, readonly exitCode: number, readonly series: Series[] = []) { super(line); }
+  constructor(readonly line: string, readonly exitCode: number, readonly series: Series[] = [],
+    readonly volumes: number | null = null) { super(line); }
 }
 export class Cancelled extends Error {}
 
@@ -46,7 +47,7 @@ class Channel {
     }
     this.waiting.delete(reply.id);
     if (reply.kind === "done") one.resolve(reply.result);
-    else one.reject(new Refused(reply.line, reply.exitCode, reply.series));
+    else one.reject(new Refused(reply.line, reply.exitCode, reply.series, reply.volumes));
   }
 }
 

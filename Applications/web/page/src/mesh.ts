@@ -11,7 +11,15 @@ import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kPreview: Color = [110, 190, 240];
 interface SurfaceReport { triangles: number; errorBoundMm: number | null;
+  componentCount: number; components: { volumeMm3: number | null }[];
   soundness: { closed: boolean; crossingPairs: number | null } }
+
+/** "3 pieces, 2 cavities"; of more than a report lists, "207 pieces and cavities". */
+function piecesOf({ componentCount, components }: SurfaceReport): string {
+  if (componentCount > components.length) return `${formatCount(componentCount)} pieces and cavities`;
+  const cavities = components.filter(({ volumeMm3 }) => (volumeMm3 ?? 0) < 0).length, pieces = componentCount - cavities;
+  return `${pieces} ${pieces === 1 ? "piece" : "pieces"}${cavities > 0 ? `, ${cavities} ${cavities === 1 ? "cavity" : "cavities"}` : ""}`;
+}
 
 export class MeshTab {
   private readonly task: Task;
@@ -137,7 +145,7 @@ export class MeshTab {
       ...(surface.errorBoundMm === null ? [] : [`no point farther than ${Number(surface.errorBoundMm.toPrecision(3))} mm from ${source} (proved)`]),
       surface.soundness.closed ? "closed" : "open",
       `${surface.soundness.crossingPairs ?? 0} pairs cross`,
-      ...(/[\d,]+ pieces?(, [\d,]+ cavit(y|ies))?/.exec(done.stdout)?.slice(0, 1) ?? [])].join("; ");
+      piecesOf(surface)].join("; ");
     await this.task.show(title, run, done, [output]);
     this.task.addSave(`Save ${output.path}`, output.path, () => output.bytes, true);
     const report = done.files.find((file) => file.path === kReport);

@@ -31,7 +31,6 @@ export interface Message { id: number; module?: WebAssembly.Module; request: Req
 
 export interface RunResult {
   exitCode: number;
-  stdout: string;
   stderr: string;
   files: OutputFile[];
   memoryBytes: number;
@@ -71,4 +70,5 @@ export interface OpenedMesh { shape: Shape; format: string; frame: string | null
 export type Reply =
   | { id: number; kind: "progress"; text: string }
   | { id: number; kind: "done"; result: RunResult | OpenedImage | OpenedMesh | Shape | number }
-  | { id: number; kind: "refused"; line: string; exitCode: number; series: Series[] };
+  /** \param volumes, series  to choose from, where a choice is needed */
+  | { id: number; kind: "refused"; line: string; exitCode: number; volumes: number | null; series: Series[] };

@@ -39,7 +39,7 @@ export class Scan {
       ...(this.series !== "" ? ["--series", this.series] : [])];
   }
 
-  /** Opens what was given on a tab; where it is refused, the tab says why and offers what the line lets choose from. */
+  /** Opens what was given on a tab; where it is refused, the tab says why and offers the choice that is needed. */
   async take(task: Task, given: InputFile[], isLabels = false, volumeIndex = -1, series = ""): Promise<boolean> {
     task.refuse("");
     const refused = await this.open(task, given, { isLabels, volumeIndex, series }), choices: HTMLElement[] = [];
@@ -50,9 +50,8 @@ export class Scan {
       button.addEventListener("click", () => this.take(task, given, isLabels, index(), number));
       choices.push(button);
     };
-    const volumes = line.includes("--volume-index") ? /\b0 to (\d+)/.exec(line) : null;
-    if (volumes !== null) {
-      const box = make("input", { type: "number", min: "0", max: volumes[1], value: "0" });
+    if (refused.volumes !== null) {
+      const box = make("input", { type: "number", min: "0", max: String(refused.volumes - 1), value: "0" });
       choices.push(make("label", {}, "Volume ", box));
       add("Open it", () => Number(box.value), "");
     } else if (refused.series.length > 0) {
@@ -101,7 +100,7 @@ export class Scan {
       if (error instanceof Cancelled) return undefined;
       if (!(error instanceof Refused)) return new Refused((error as Error).message, 3);
       const named = path === kSlices ? error.line.replace(`${kSlices}:`, `${given.length} files:`) : error.line;
-      return new Refused(named, error.exitCode, error.series);
+      return new Refused(named, error.exitCode, error.series, error.volumes);
     }
   }
   private turn = 0;

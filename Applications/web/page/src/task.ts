@@ -130,12 +130,11 @@ export class Task {
     const sums = await Promise.all(files.map((file) => sha256(file.bytes)));
     const verdict = [title, `adaptiso ${kVersion}`,
       ...(files.length === 1 ? [`SHA-256 ${sums[0]}`] : [])].join("; ");
-    const warnings = done.stderr.split("\n").filter((line) => /(warning|note): /.test(line))
-      .map((line) => line.replace(/^.*?(warning|note): /, ""));
+    const warnings = (reportOf(done)?.warnings ?? []) as ProgramWarning[];
     this.part(".result").replaceChildren(
       make("p", { className: "verdict" }, make("strong", {}, title)),
       ...details,
-      ...(warnings.length > 0 ? [make("ul", { className: "warnings" }, ...warnings.map((text) => make("li", {}, text)))] : []),
+      ...(warnings.length > 0 ? [make("ul", { className: "warnings" }, ...warnings.map((warning) => make("li", {}, warningLine(warning))))] : []),
       copyLine("Verdict", verdict), copyLine("The same bytes by", command),
       make("p", { className: "cost" },
         `${done.seconds.toFixed(1)} s, ${formatBytes(done.memoryBytes)} of memory. Nothing was sent.`));
@@ -166,6 +165,10 @@ function copyLine(label: string, text: string): HTMLElement {
   button.addEventListener("click", () => copy(text, button));
   return make("div", { className: "copy" }, make("span", { className: "label" }, label), make("code", {}, text), button);
 }
+
+interface ProgramWarning { code: string; file: string | null; text: string }
+
+const warningLine = ({ file, text }: ProgramWarning): string => (file === null ? text : `${file}: ${text}`);
 
 /** The report that --json wrote. */
 export function reportOf(done: RunResult): Record<string, unknown> | undefined {

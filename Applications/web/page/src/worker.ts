@@ -67,10 +67,10 @@ function listFiles(fs: FileSystem, folder: string): string[] {
 }
 
 async function run(id: number, request: RunRequest): Promise<void> {
-  const stdout: string[] = [], stderr: string[] = [];
+  const stderr: string[] = [];
   const instance = await makeInstance({
     thisProgram: request.program,
-    print: (line: string) => stdout.push(line),
+    print: () => {},  // the report has it
     printErr: (line: string) => stderr.push(line),
     onProgress: (text: string) => reply({ id, kind: "progress", text }),
   });
@@ -82,7 +82,7 @@ async function run(id: number, request: RunRequest): Promise<void> {
   const seconds = (performance.now() - begin) / 1000;
   const files: OutputFile[] = listFiles(instance.FS, ".").filter((path) => !given.has(path))
     .map((path) => ({ path, bytes: instance.FS.readFile(path) }));
-  const result: RunResult = { exitCode, stdout: stdout.join("\n"), stderr: stderr.join("\n"), files,
+  const result: RunResult = { exitCode, stderr: stderr.join("\n"), files,
     memoryBytes: instance.HEAPU8.length, seconds };
   reply({ id, kind: "done", result }, files.map((file) => file.bytes.buffer));
 }
@@ -91,14 +91,15 @@ const answerOf = (instance: Instance): string => instance.ccall("adaptisoAnswer"
 
 /** \throws Refusal */
 class Refusal extends Error {
-  constructor(readonly line: string, readonly exitCode: number, readonly series: Series[] = []) { super(line); }
+  constructor(readonly line: string, readonly exitCode: number, readonly volumes: number | null, readonly hasSeries: boolean,
+    readonly series: Series[] = []) { super(line); }
 }
 
 function call<T = Record<string, unknown>>(instance: Instance, name: string, types: string[], args: unknown[]): T {
   const exitCode = instance.ccall(name, "number", types, args) as number;
-  const answer = answerOf(instance);
-  if (exitCode !== 0) throw new Refusal(answer, exitCode);
-  return JSON.parse(answer);
+  const answer = JSON.parse(answerOf(instance));
+  if (exitCode !== 0) throw new Refusal(answer.line, exitCode, answer.volumes, answer.hasSeries);
+  return answer;
 }
 
 /** Opens the image; where it has to be chosen from several series, the refusal has them. */
@@ -107,8 +108,8 @@ function openImage(instance: Instance, request: OpenRequest): Record<string, unk
     return call(instance, "adaptisoOpenImage", ["string", "number", "string", "number"],
       [request.path, request.volumeIndex, request.series, request.isLabels ? 1 : 0]);
   } catch (error) {
-    if (!(error instanceof Refusal) || !error.line.includes("--list-series")) throw error;
-    throw new Refusal(error.line, error.exitCode, call<Series[]>(instance, "adaptisoListSeries", ["string"], [request.path]));
+    if (!(error instanceof Refusal) || !error.hasSeries) throw error;
+    throw new Refusal(error.line, error.exitCode, null, true, call<Series[]>(instance, "adaptisoListSeries", ["string"], [request.path]));
   }
 }
 
@@ -192,6 +193,7 @@ self.addEventListener("message", async (event: MessageEvent<Message>) => {
   } catch (error) {
     const isRefusal = error instanceof Refusal;
     reply({ id, kind: "refused", exitCode: isRefusal ? error.exitCode : 4, series: isRefusal ? error.series : [],
+      volumes: isRefusal ? error.volumes : null,
       line: isRefusal ? error.line : `the page failed: ${error instanceof Error ? error.message : error}` });
   }
 });

@@ -20,6 +20,7 @@ struct ToldNote {
     /// Frame of the reported places; empty if the file does not say it.
     std::optional<CoordinateFrame> frame = CoordinateFrame::Ras;
     std::vector<Vec3> placesMm{};
+    bool isWarned = false;  ///< a warning of the run holds the finding
 };
 
 /// How many are noted.
@@ -34,8 +35,8 @@ void printNotes(std::ostream& out, std::span<const ToldNote> notes);
 /// List of {name, of, outcome, finding, pointsIn, pointsMm}, points as told.
 Json notesJson(std::span<const ToldNote> notes);
 
-/// Adds what is asked to the checks of a page, and the places of what is noted to its spots. What
-/// one of report.warnings says is not said again.
+/// Adds what is asked to the checks of a page, and the places of what is noted to its spots. A
+/// finding that a warning holds is not repeated.
 void addNotes(std::span<const ToldNote> notes, Report& report);
 
 }  // namespace adaptiso

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Core/Warning.h"
@@ -56,6 +57,21 @@ struct ReadVolume {
     std::string scaling{};
 };
 
+/// An input holds several images, and the options choose none of them.
+class ChoiceNeeded : public FileError {
+public:
+    enum class Among { Volumes, Series };
+    /// \param count  images to choose from
+    ChoiceNeeded(const std::string& line, Among among, std::int64_t count)
+        : FileError(line), among_(among), count_(count) {}
+    Among among() const { return among_; }
+    std::int64_t count() const { return count_; }
+
+private:
+    Among among_;
+    std::int64_t count_;
+};
+
 /// Reads one scalar 3-D image: NIfTI (.nii, .nii.gz, .hdr/.img; versions 1 and 2), NRRD (.nrrd,
 /// .nhdr), MetaImage (.mha, .mhd), MGH (.mgh, .mgz), a multi-frame or mosaic DICOM file, a
 /// DICOMDIR, or a folder that holds the slices of a DICOM series, in subfolders too. What a file is
@@ -102,6 +118,7 @@ struct ReadVolume {
 ///         several volumes or series, a single slice, uneven, missing or repeated slices, names
 ///         data outside its own folder, or contradicts its own data. Nothing is padded and nothing
 ///         is guessed.
+/// \throws ChoiceNeeded  several volumes or series, of which the options choose none
 /// \pre  not called from two threads at once for DICOM (GDCM's message switches are global).
 /// \throws InvalidInput  options.series and the input is no DICOM, or options.level, channel,
 ///         timePoint or refusesMissingChunks and it is no Zarr or N5
