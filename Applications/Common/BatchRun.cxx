@@ -23,101 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOutput = "--output";
 
-// ---- what programs report
-
-/// "closed, manifold" of what failed in a check, after `subject` if given.
-void addFailed(const Json& checked, const std::string& subject, std::string& text) {
-    const std::string failed = joined(checked.value("failed", std::vector<std::string>()));
-    if (failed.empty()) return;
-    addPart(text, (subject.empty() ? "" : subject + ": ") + failed, "; ");
-}
-
-std::string checkResult(const Json& report) {
-    std::string text;
-    const Json surfaces = report.value("surfaces", Json::array());
-    for (const Json& surface : surfaces) {
-        addFailed(surface, surfaces.size() == 1 ? "" : surface.value("file", ""), text);
-    }
-    if (const Json nesting = report.value("nesting", Json()); nesting.is_object()) {
-        for (const Json& pair : nesting.at("pairs")) {
-            addFailed(pair, pair.value("inner", "") + " in " + pair.value("outer", ""), text);
-        }
-    }
-    return text.empty() ? "all that is required holds" : text;
-}
-
-std::string meshResult(const Json& report) {
-    std::string text;
-    for (const Json& surface : report.value("surfaces", Json::array())) {
-        addPart(text,
-                surface.at("output").at("file").get<std::string>() + ", " +
-                    formatCount(wholeNumber<std::int64_t>(surface.at("triangles"))) +
-                    " triangles at " + formatShort(surface.at("isovalue").get<double>()),
-                "; ");
-    }
-    return text;
-}
-
-std::string labelsResult(const Json& report) {
-    if (!report.contains("walls")) return {};
-    for (const Json& check : report.value("checks", Json::array())) {
-        if (!check.value("passed", true)) return "failed: " + check.at("name").get<std::string>();
-    }
-    return formatCount(static_cast<long long>(report.at("regions").size())) + " regions, " +
-           formatCount(wholeNumber<std::int64_t>(report.at("walls").at("triangles"))) +
-           " triangles";
-}
-
-std::string bemResult(const Json& report) {
-    if (report.value("model", false)) {
-        return "a model of " + std::to_string(report.at("surfaces").size()) + " surfaces";
-    }
-    const Json findings = report.value("findings", Json::array());
-    return "no model: " + (findings.empty() ? std::string("it could not be guaranteed")
-                                            : findings[0].at("what").get<std::string>());
-}
-
-std::string simplifyResult(const Json& report) {
-    if (!report.contains("output")) return {};
-    if (report.value("failedBySoundness", false)) return "is not sound";
-    return formatCount(wholeNumber<std::int64_t>(report.at("output").at("triangles"))) +
-           " triangles of " +
-           formatCount(wholeNumber<std::int64_t>(report.at("input").at("triangles")));
-}
-
-/// The result of a run that reached one, in a few words.
-std::string resultOf(const std::string& program, const Json& report) {
-    if (program == "adaptiso-mesh") return meshResult(report);
-    if (program == "adaptiso-check") return checkResult(report);
-    if (program == "adaptiso-labels") return labelsResult(report);
-    if (program == "adaptiso-bem") return bemResult(report);
-    return simplifyResult(report);
-}
-
-/// Names of the files written under --output; within the folder `folder` where it names one.
-std::vector<std::string> outputsOf(const std::string& program, const Json& report,
-                                   const std::string& folder) {
-    std::vector<std::string> files;
-    const Json output = report.value("output", Json::object());
-    if (program == "adaptiso-mesh") {
-        for (const Json& surface : report.value("surfaces", Json::array())) {
-            const Json& file = surface.at("output");
-            if (file.value("written", true)) files.push_back(file.at("file"));
-        }
-    } else if (program == "adaptiso-simplify" && output.value("written", false)) {
-        files.push_back(output.at("file"));
-        for (const Json& data : report.at("data")) files.push_back(data.at("output"));
-    } else if ((program == "adaptiso-labels" && output.value("written", false)) ||
-               (program == "adaptiso-bem" && report.value("model", false))) {
-        for (const Json& file : output.at("files")) {
-            files.push_back(folder + "/" + file.at("file").get<std::string>());
-        }
-    }
-    return files;
-}
-
-// ---- running
-
 RecordedFile described(const std::string& option, const std::string& name, const fs::path& path) {
     RecordedFile file;
     file.file = name;
@@ -149,6 +54,14 @@ std::vector<RecordedFile> describedInputs(const PlannedRun& run, const fs::path&
         inputs.clear();
     }
     return inputs;
+}
+
+using Files = std::vector<std::string>;
+
+/// A value of resultJson(); `missing` where the report has none.
+template <class Value>
+Value resultOf(const Json& report, const char* key, const Value& missing) {
+    return report.value("result", Json::object()).value(key, missing);
 }
 
 /// "a.json" of "a.vtp" and of "a/walls.vtp".
@@ -360,8 +273,7 @@ private:
         const auto add = [&](const std::string& option, const std::string& name) {
             record.recordedOutputs.push_back(described(option, name, run.item.folder / name));
         };
-        const std::string folder = run.outputFolder.filename().string();
-        for (const std::string& file : outputsOf(program_.name, record.report, folder)) {
+        for (const std::string& file : resultOf(record.report, "files", Files())) {
             record.outputs.push_back((run.outputFolder.parent_path() / file).string());
             add(kOutput, record.outputs.back());
         }
@@ -394,7 +306,7 @@ private:
         if (!record.error.empty()) return record.error;
         if (!record.report.is_object()) return "";
         if (!record.report.value("failedByWarnings", false)) {
-            return resultOf(program_.name, record.report);
+            return resultOf(record.report, "says", std::string());
         }
         return strictFailure(common_, record.warnings, "");
     }

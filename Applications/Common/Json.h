@@ -17,6 +17,13 @@ inline Json reportFailureJson(const std::string& failure) {
     return failure.empty() ? Json(nullptr) : Json(failure);
 }
 
+/// `result` of a report: what a batch, its records and its page take over.
+/// \param says   in a few words
+/// \param files  written under --output, as paths from the folder that holds it
+inline Json resultJson(const std::string& says, const std::vector<std::string>& files = {}) {
+    return {{"says", says}, {"files", files}};
+}
+
 /// "ras" and so on, or null where the frame is not known.
 inline Json frameJson(const std::optional<CoordinateFrame>& frame) {
     return frame ? Json(frameWord(*frame)) : Json(nullptr);

@@ -33,14 +33,30 @@ void printSurface(std::ostream& out, HeadSurface which, const BemSurface& surfac
         << formatRounded(surface.volumeMm3 / 1000) << " cm3\n";
 }
 
+Json resultJson(const BemRun& run, bool hasModel) {
+    if (!hasModel) {
+        const auto& findings = run.model.findings;
+        return adaptiso::resultJson("no model: " + (findings.empty() ? "it could not be guaranteed"
+                                                                     : findings.front().what));
+    }
+    std::vector<std::string> files;
+    for (const auto& file : run.files) {
+        files.push_back(baseName(run.options.output) + "/" + file.first);
+    }
+    return adaptiso::resultJson(
+        "a model of " + std::to_string(run.model.surfaces.size()) + " surfaces", files);
+}
+
 }  // namespace
 
 std::string jsonReport(const BemRun& run) {
-    Json report{{"model", run.model.hasModel() && !run.failsStrict() && !run.options.isDryRun},
+    const bool hasModel = run.model.hasModel() && !run.failsStrict() && !run.options.isDryRun;
+    Json report{{"model", hasModel},
                 {"input", bemInputJson(run.model)},
                 {"options", optionsJson(run.options)}};
     report.update(bemModelJson(run.model));
     report["output"] = outputJson(run);
+    report["result"] = resultJson(run, hasModel);
     return run.json("adaptiso-bem/1", report);
 }
 

@@ -509,6 +509,23 @@ void addSpots(const CheckRun& run, const ShownSurfaces& shown, Report& report) {
                      });
 }
 
+/// "ball.stl: closed, manifoldEdges; inner.stl in outer.stl: noCrossing"; one surface is not named.
+std::string saysText(const CheckRun& run) {
+    std::string text;
+    const auto add = [&](const std::string& subject, const std::vector<Check>& checks) {
+        std::string failed;
+        for (const Check& check : checks) {
+            if (check.breaksProfile()) addPart(failed, check.key);
+        }
+        if (!failed.empty()) addPart(text, (subject.empty() ? "" : subject + ": ") + failed, "; ");
+    };
+    for (const SurfaceRun& surface : run.surfaces) {
+        add(run.surfaces.size() == 1 ? "" : baseName(surface.file), surface.checks);
+    }
+    for (const NestingRun& pair : run.nesting) add(pairName(run, pair), pair.checks);
+    return text.empty() ? "all that is required holds" : text;
+}
+
 }  // namespace
 
 std::string jsonReport(const CheckRun& run) {
@@ -518,7 +535,8 @@ std::string jsonReport(const CheckRun& run) {
                                          {"volume", volumeJson(run)},
                                          {"surfaces", surfaces},
                                          {"nesting", nestingJson(run)},
-                                         {"plausibility", notesJson(run.notes)}});
+                                         {"plausibility", notesJson(run.notes)},
+                                         {"result", resultJson(saysText(run))}});
 }
 
 void printReport(std::ostream& out, const CheckRun& run) {

@@ -261,6 +261,19 @@ std::vector<std::size_t> chooseShown(const LabelsRun& run, Report& report) {
     return shown;
 }
 
+Json resultJson(const LabelsRun& run) {
+    std::vector<std::string> files;
+    if (run.writesFolder()) {
+        for (const auto& file : run.files) files.push_back(baseName(run.folder) + "/" + file.first);
+    }
+    const auto failed = std::ranges::find(run.checks, false, &LabelsCheck::isPassed);
+    const std::string says = failed != run.checks.end()
+                                 ? "failed: " + failed->name
+                                 : formatCount(std::ssize(run.regions)) + " regions, " +
+                                       formatCount(run.triangles) + " triangles";
+    return adaptiso::resultJson(says, files);
+}
+
 }  // namespace
 
 Report makeReport(const LabelsRun& run, const RegionSurfaces& surfaces,
@@ -297,6 +310,7 @@ std::string jsonReport(const LabelsRun& run) {
         output["files"].push_back({{"file", name}, {"bytes", bytes}});
     }
     json["options"]["threads"] = orNull(run.options.common.threads);
+    json["result"] = resultJson(run);
     return run.json("adaptiso-labels/1", json);
 }
 

@@ -200,6 +200,21 @@ ReportTable surfaceTable(const MeshRun& run) {
     return table;
 }
 
+/// "ball.vtp, 1,234 triangles at 100; ..."
+Json resultJson(const MeshRun& run) {
+    std::vector<std::string> files;
+    const std::string says = joined(
+        run.surfaces,
+        [&](const SurfaceSummary& surface) {
+            if (!run.failsStrict()) files.push_back(surface.file.filename().string());
+            return surface.file.filename().string() + ", " +
+                   formatCount(surface.topology.triangles) + " triangles at " +
+                   formatShort(surface.isovalue);
+        },
+        "; ");
+    return adaptiso::resultJson(says, files);
+}
+
 }  // namespace
 
 std::string jsonReport(const MeshRun& run) {
@@ -211,7 +226,8 @@ std::string jsonReport(const MeshRun& run) {
                                         {"preprocessing", preprocessedJson(run)},
                                         {"options", optionsJson(run.options)},
                                         {"index", indexJson(run.index)},
-                                        {"surfaces", surfaces}});
+                                        {"surfaces", surfaces},
+                                        {"result", resultJson(run)}});
 }
 
 void printReport(std::ostream& out, const MeshRun& run) {

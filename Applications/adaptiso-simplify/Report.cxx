@@ -202,6 +202,18 @@ void addSpots(const SimplifyRun& run, const TriangleMesh& input, const PageFrame
     }
 }
 
+Json resultJson(const SimplifyRun& run) {
+    if (run.failsSoundness()) return adaptiso::resultJson("is not sound");
+    std::vector<std::string> files;
+    if (run.writesSurface()) {
+        files.push_back(baseName(run.output.file));
+        for (const DataSummary& data : run.data) files.push_back(baseName(data.output));
+    }
+    return adaptiso::resultJson(
+        formatCount(run.output.triangles) + " triangles of " + formatCount(run.input.triangles),
+        files);
+}
+
 }  // namespace
 
 std::string jsonReport(const SimplifyRun& run) {
@@ -209,7 +221,8 @@ std::string jsonReport(const SimplifyRun& run) {
                                             {"options", optionsJson(run.command)},
                                             {"output", outputJson(run)},
                                             {"data", dataJson(run)},
-                                            {"failedBySoundness", run.failsSoundness()}});
+                                            {"failedBySoundness", run.failsSoundness()},
+                                            {"result", resultJson(run)}});
 }
 
 void printReport(std::ostream& out, const SimplifyRun& run) {

@@ -141,6 +141,7 @@ class Bytes(InFolder):
                    for folder in (ours, theirs)]
         self.assertEqual(*readmes)
         reports = [json.loads((folder / "report.json").read_text()) for folder in (ours, theirs)]
+        del reports[1]["result"]  # for a batch, which Python has none of
         self.assertEqual(*map(list, reports))
         for report in reports:
             for key in ("program", "seconds", "peakMemoryMb"):
