@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -8,9 +9,8 @@
 #include "Common/ChildProcess.h"
 #include "Common/CommonOptions.h"
 #include "Common/RunApp.h"
+#include "Phantoms.h"
 #include "SelfTest.h"
-#include "Support/Meshes.h"
-#include "Support/ScannedPhantoms.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -27,41 +27,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using testing::kDistanceSurface, testing::kDistancePerMm;
-
-/// A solid whose size is known on paper, and what its tolerances follow from.
-struct Solid {
-    testing::Shape shape;
-    Vec3 centreMm;                ///< LPS
-    double smallestRadiusMm = 0;  ///< of its surface's curvature
-};
-
-Solid ball(const Vec3& centreMm, double radiusMm) {
-    return {testing::sphere(centreMm, radiusMm), centreMm, radiusMm};
+/// Another copy of the mesh.
+void addCopy(TriangleMesh& mesh, const Vec3& shiftMm) {
+    const std::size_t points = mesh.points.size(), triangles = mesh.triangles.size();
+    for (std::size_t n = 0; n < points; ++n) mesh.points.push_back(mesh.points[n] + shiftMm);
+    const auto offset = static_cast<VertexId>(points);
+    for (std::size_t n = 0; n < triangles; ++n) {
+        const auto [a, b, c] = mesh.triangles[n];
+        mesh.triangles.push_back({a + offset, b + offset, c + offset});
+    }
 }
 
-/// Ring about an axis along z. \pre majorRadiusMm > minorRadiusMm
-Solid ring(const Vec3& centreMm, double majorRadiusMm, double minorRadiusMm) {
-    return {testing::torus(centreMm, majorRadiusMm, minorRadiusMm), centreMm,
-            std::min(minorRadiusMm, majorRadiusMm - minorRadiusMm)};
+/// A copy mirrored through the first vertex, which both share.
+void addMirrorImage(TriangleMesh& mesh) {
+    const std::size_t points = mesh.points.size(), triangles = mesh.triangles.size();
+    for (std::size_t n = 1; n < points; ++n) {
+        mesh.points.push_back(2 * mesh.points.front() - mesh.points[n]);
+    }
+    const auto mirrored = [&](VertexId v) {
+        return v == 0 ? v : v + static_cast<VertexId>(points) - 1;
+    };
+    for (std::size_t n = 0; n < triangles; ++n) {  // a point reflection turns triangles round
+        const auto [a, b, c] = mesh.triangles[n];
+        mesh.triangles.push_back({mirrored(a), mirrored(c), mirrored(b)});
+    }
 }
-
-/// Turned about an axis that no voxel axis shares, the solid in the middle.
-ImageGeometry obliqueGeometry(const Index3& size, const Vec3& spacingMm, const Solid& solid) {
-    ImageGeometry geometry = testing::obliqueGeometry(size, spacingMm);
-    geometry.originMm += solid.centreMm;
-    return geometry;
-}
-
-/// A mesh with one defect, and the name of the check that has to find it.
-struct PlantedDefect {
-    std::string name;
-    std::string_view key;  ///< Check::key
-    TriangleMesh mesh;
-};
 
 /// The first triangle cut in three from a point close to its first corner.
-TriangleMesh withSlivers(TriangleMesh mesh) {
+void addSlivers(TriangleMesh& mesh) {
     const Triangle t = mesh.triangles.front();
     const Vec3 corner = mesh.points[t[0]];
     const VertexId added = std::ssize(mesh.points);
@@ -70,56 +63,65 @@ TriangleMesh withSlivers(TriangleMesh mesh) {
     mesh.triangles.front() = {added, t[1], t[2]};
     mesh.triangles.push_back({t[0], t[1], added});
     mesh.triangles.push_back({t[0], added, t[2]});
-    return mesh;
 }
 
-/// One for each check of a single surface.
-/// \param ball  closed and sound, one piece of genus 0, 60 mm wide
-/// \param ring  the same of genus 1
-std::vector<PlantedDefect> plantDefects(const TriangleMesh& ball, const TriangleMesh& ring) {
-    std::vector<PlantedDefect> planted;
-    TriangleMesh sound = ball;
-    sound.normals = {};
-    const auto plant = [&](const char* name, std::string_view key, const auto& make) {
-        planted.push_back({name, key, make(sound)});
-    };
-    plant("a coordinate that is no number", "finiteCoordinates", testing::withNanCoordinate);
-    plant("a vertex number beyond the last", "indicesInRange", testing::withIndexOutOfRange);
-    plant("a triangle missing", "closed", testing::withHole);
-    plant("a fin on an edge", "manifoldEdges", [](TriangleMesh mesh) {
-        const Triangle t = mesh.triangles.front();
-        mesh.points.push_back(mesh.points[t[0]] + Vec3{100, 0, 0});
-        mesh.triangles.push_back({t[0], t[1], std::ssize(mesh.points) - 1});
-        return mesh;
-    });
-    plant("two balls touching at a vertex", "manifoldVertices",
-          [](const TriangleMesh&) { return testing::twoSpheresTouchingAtAVertex(); });
-    plant("a triangle turned round", "consistentOrientation", testing::withFlippedTriangle);
-    plant("inside out", "outward", [](TriangleMesh mesh) {
-        flipOrientation(mesh);
-        return mesh;
-    });
-    plant("a second piece", "oneComponent", [](const TriangleMesh& mesh) {
-        return testing::merged({mesh, testing::translated(mesh, {100, 0, 0})});
-    });
-    plant("a handle", "genusZero", [&](const TriangleMesh&) { return ring; });
-    plant("a triangle without area", "noDegenerateTriangles", testing::withRepeatedIndex);
-    plant("a triangle twice", "noDuplicateTriangles", testing::withDuplicateTriangle);
-    plant("two vertices at one place", "noDuplicateVertices", [](TriangleMesh mesh) {
-        mesh.points.push_back(mesh.points[mesh.triangles.front()[0]]);
-        mesh.triangles.front()[0] = std::ssize(mesh.points) - 1;
-        return mesh;
-    });
-    plant("a vertex of no triangle", "noUnusedVertices", testing::withUnusedVertex);
-    plant("two balls that cross", "noSelfIntersections",
-          [](const TriangleMesh&) { return testing::crossingSpheres(2); });
-    plant("slivers", "minAngle", withSlivers);
-    plant("metres taken for millimetres", "plausibleSize", [](TriangleMesh mesh) {
-        for (Vec3& p : mesh.points) p = 0.001 * p;
-        return mesh;
-    });
-    return planted;
-}
+/// A defect, the check that has to find it (Check::key), and how a sound mesh gets it.
+struct Defect {
+    const char* name;
+    std::string_view key;
+    void (*plant)(TriangleMesh& mesh);
+};
+
+/// One for each check of a single surface but genusZero, which a ring fails. Meshes are closed,
+/// sound, one piece of genus 0, 60 mm wide, without normals.
+constexpr Defect kDefects[] = {
+    {"a coordinate that is no number", "finiteCoordinates",
+     [](TriangleMesh& m) { m.points.front().x = std::numeric_limits<double>::quiet_NaN(); }},
+    {"a vertex number beyond the last", "indicesInRange",
+     [](TriangleMesh& m) {
+         m.triangles.push_back({0, 1, std::ssize(m.points)});
+     }},
+    {"a triangle missing", "closed", [](TriangleMesh& m) { m.triangles.pop_back(); }},
+    {"a fin on an edge", "manifoldEdges",
+     [](TriangleMesh& m) {
+         const Triangle t = m.triangles.front();
+         m.points.push_back(m.points[t[0]] + Vec3{100, 0, 0});
+         m.triangles.push_back({t[0], t[1], std::ssize(m.points) - 1});
+     }},
+    {"two balls touching at a vertex", "manifoldVertices", addMirrorImage},
+    {"a triangle turned round", "consistentOrientation",
+     [](TriangleMesh& m) { std::swap(m.triangles.front()[1], m.triangles.front()[2]); }},
+    {"inside out", "outward", [](TriangleMesh& m) { flipOrientation(m); }},
+    {"a second piece", "oneComponent",
+     [](TriangleMesh& m) {
+         addCopy(m, {100, 0, 0});
+     }},
+    {"a triangle without area", "noDegenerateTriangles",
+     [](TriangleMesh& m) {
+         const Triangle t = m.triangles.front();
+         m.triangles.push_back({t[0], t[0], t[1]});
+     }},
+    {"a triangle twice", "noDuplicateTriangles",
+     [](TriangleMesh& m) { m.triangles.push_back(Triangle(m.triangles.front())); }},
+    {"two vertices at one place", "noDuplicateVertices",
+     [](TriangleMesh& m) {
+         m.points.push_back(Vec3(m.points[m.triangles.front()[0]]));
+         m.triangles.front()[0] = std::ssize(m.points) - 1;
+     }},
+    {"a vertex of no triangle", "noUnusedVertices",
+     [](TriangleMesh& m) {
+         m.points.push_back({7, 7, 7});
+     }},
+    {"two balls that cross", "noSelfIntersections",
+     [](TriangleMesh& m) {
+         addCopy(m, {10, 0, 0});
+     }},
+    {"slivers", "minAngle", addSlivers},
+    {"metres taken for millimetres", "plausibleSize",
+     [](TriangleMesh& m) {
+         for (Vec3& p : m.points) p = 0.001 * p;
+     }},
+};
 
 /// How far a surface of triangles may lie from the solid's: the chord of a cell's diagonal on the
 /// sharpest bend, once for the samples (distances are not linear across a bend) and once for the
@@ -152,11 +154,10 @@ Vec3 centreOf(const TriangleMesh& mesh) {
 /// How far the farthest vertex, or middle of a triangle, lies from the solid's surface.
 double farthestMm(const TriangleMesh& mesh, const Solid& solid) {
     double farthest = 0;
-    for (const Vec3& p : mesh.points)
-        farthest = std::max(farthest, std::abs(solid.shape.depthMm(p)));
+    for (const Vec3& p : mesh.points) farthest = std::max(farthest, std::abs(solid.depthMm(p)));
     for (const Triangle& t : mesh.triangles) {
         const Vec3 middle = (1.0 / 3) * (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]]);
-        farthest = std::max(farthest, std::abs(solid.shape.depthMm(middle)));
+        farthest = std::max(farthest, std::abs(solid.depthMm(middle)));
     }
     return farthest;
 }
@@ -254,7 +255,7 @@ private:
 
     /// As the programs do it, from the image's file to the mesh's.
     TriangleMesh throughFiles(const VolumeView& phantom, double isovalue, Method method) {
-        const ReadVolume read = readVolume(writeImage(testing::niftiFile(phantom)));
+        const ReadVolume read = readVolume(writeImage(niftiFile(phantom)));
         return writtenAndRead(extract(read.volume, isovalue, method), ".vtp");
     }
 
@@ -273,11 +274,10 @@ private:
     void addSolid(const Solid& solid, const ImageGeometry& geometry, Method method,
                   const TriangleMesh& mesh) {
         const double allowed = allowedMm(solid, geometry, method);
-        addSound(mesh, solid.shape.components, solid.shape.genus);
+        addSound(mesh, 1, solid.genus);
         add("farthest from the solid", "mm", 0, allowed, farthestMm(mesh, solid), 3);
         // a layer as thick as the surface may be off
-        add("volume", "mm3", *solid.shape.volumeMm3, *solid.shape.areaMm2 * allowed,
-            enclosedVolume(mesh), 0);
+        add("volume", "mm3", solid.volumeMm3, solid.areaMm2 * allowed, enclosedVolume(mesh), 0);
         const Vec3 centre = centreOf(mesh);
         add("centre, to the right", "mm", -solid.centreMm.x, allowed, -centre.x, 3);
         add("centre, to the front", "mm", -solid.centreMm.y, allowed, -centre.y, 3);
@@ -292,8 +292,8 @@ private:
         about(named("ball of 40 mm", method), [&] {
             const Solid solid = ball({-12, 7, 31}, 20);
             const ImageGeometry geometry = obliqueGeometry({54, 54, 34}, {0.9, 0.9, 1.5}, solid);
-            const TriangleMesh mesh = throughFiles(testing::distanceScan(solid.shape, geometry),
-                                                   kDistanceSurface, method);
+            const TriangleMesh mesh =
+                throughFiles(distanceScan(solid, geometry), kDistanceSurface, method);
             addSolid(solid, geometry, method, mesh);
         });
     }
@@ -302,8 +302,8 @@ private:
         about(named("torus of 40 and 16 mm", method), [&] {
             const Solid solid = ring({25, -40, -8}, 20, 8);
             const ImageGeometry geometry = obliqueGeometry({84, 84, 60}, {0.8, 0.8, 1}, solid);
-            TriangleMesh mesh = throughFiles(testing::distanceScan(solid.shape, geometry),
-                                             kDistanceSurface, method);
+            TriangleMesh mesh =
+                throughFiles(distanceScan(solid, geometry), kDistanceSurface, method);
             addSolid(solid, geometry, method, mesh);
             test_.shown.push_back({subject_, std::move(mesh)});
         });
@@ -315,7 +315,7 @@ private:
             constexpr double kInnerMm = 30, kOuterMm = 34;
             const Solid solid = ball({0, 0, 0}, kInnerMm);
             const ImageGeometry geometry = obliqueGeometry({60, 60, 60}, {1.25, 1.25, 1.25}, solid);
-            const Volume phantom = testing::distanceScan(solid.shape, geometry);
+            const Volume phantom = distanceScan(solid, geometry);
             const TriangleMesh inner = throughFiles(phantom, kDistanceSurface, method);
             const TriangleMesh outer = throughFiles(
                 phantom, kDistanceSurface - kDistancePerMm * (kOuterMm - kInnerMm), method);
@@ -335,8 +335,8 @@ private:
         about(named("two bearing balls in CT", method), [&] {
             constexpr double kDiameterMm = 10;
             constexpr double kToleranceMm = 0.05;  // a tenth of a voxel, as makers of CT are asked
-            const Volume phantom = testing::bearingBalls(kDiameterMm);
-            TriangleMesh mesh = throughFiles(phantom, testing::kBallSurface, method);
+            const Volume phantom = bearingBalls(kDiameterMm);
+            TriangleMesh mesh = throughFiles(phantom, kBallSurface, method);
             addSound(mesh, 2, 0);
             for (const SurfaceComponent& piece : checkTopology(mesh).components) {
                 add("diameter of the ball as large", "mm", kDiameterMm, kToleranceMm,
@@ -349,8 +349,8 @@ private:
     void compareThreads() {
         about("torus, one thread and all", [&] {
             const Solid solid = ring({0, 0, 0}, 20, 8);
-            const Volume phantom = testing::distanceScan(
-                solid.shape, obliqueGeometry({84, 84, 60}, {0.8, 0.8, 1}, solid));
+            const Volume phantom =
+                distanceScan(solid, obliqueGeometry({84, 84, 60}, {0.8, 0.8, 1}, solid));
             const TriangleMesh byAll = extract(phantom, kDistanceSurface, Method::Adaptive);
             CommonOptions one;
             one.threads = 1;
@@ -362,8 +362,7 @@ private:
     /// A surface without a fault, not even a sliver, to plant defects in.
     static TriangleMesh faultless(const Solid& solid) {
         constexpr double kMinAngleDeg = 10;
-        const Volume phantom =
-            testing::distanceScan(solid.shape, obliqueGeometry({80, 80, 76}, {1, 1, 1}, solid));
+        const Volume phantom = distanceScan(solid, obliqueGeometry({80, 80, 76}, {1, 1, 1}, solid));
         return extract(phantom, kDistanceSurface, Method::Adaptive, kMinAngleDeg);
     }
     static TriangleMesh plainBall() { return faultless(ball({0, 0, 0}, 30)); }
@@ -385,7 +384,6 @@ private:
 
     void findDefects() {
         const TriangleMesh ball = plainBall();
-        const TriangleMesh handle = faultless(ring({0, 0, 0}, 24, 10));
         CheckRules options;
         options.profile = Profile::Bem;
         about("ball without a defect", [&] {
@@ -395,12 +393,21 @@ private:
             addCount("checks failed", 0,
                      static_cast<double>(failedChecks(judgeSurface(facts, options))));
         });
-        for (PlantedDefect& defect : plantDefects(ball, handle)) {
-            about("defect: " + defect.name, [&] {
+        const auto plant = [&](const std::string& name, std::string_view key, TriangleMesh mesh) {
+            about("defect: " + name, [&] {
                 const SurfaceFacts facts =
-                    measureSurface(defect.mesh, sizeLimitsOf(Profile::Bem), options.maxPairs);
-                addYes("found", hasFailed(judgeSurface(facts, options), defect.key));
+                    measureSurface(mesh, sizeLimitsOf(Profile::Bem), options.maxPairs);
+                addYes("found", hasFailed(judgeSurface(facts, options), key));
             });
+        };
+        for (const Defect& defect : kDefects) {
+            TriangleMesh mesh = ball;
+            mesh.normals = {};
+            defect.plant(mesh);
+            plant(defect.name, defect.key, std::move(mesh));
+            if (defect.key == "oneComponent") {
+                plant("a handle", "genusZero", faultless(ring({0, 0, 0}, 24, 10)));
+            }
         }
         const auto nest = [&](const char* name, std::string_view key, const TriangleMesh& inner,
                               const TriangleMesh& outer) {
@@ -412,10 +419,13 @@ private:
         };
         TriangleMesh large = ball;
         for (Vec3& p : large.points) p = 1.2 * p;  // 6 mm outside
-        nest("inner surface through the outer", "noCrossing", testing::translated(ball, {8, 0, 0}),
-             large);
+        const auto moved = [](TriangleMesh mesh, const Vec3& byMm) {
+            for (Vec3& p : mesh.points) p += byMm;
+            return mesh;
+        };
+        nest("inner surface through the outer", "noCrossing", moved(ball, {8, 0, 0}), large);
         nest("inner and outer swapped", "strictlyNested", large, ball);
-        nest("a gap of 0.2 mm", "minGap", testing::translated(ball, {5.8, 0, 0}), large);
+        nest("a gap of 0.2 mm", "minGap", moved(ball, {5.8, 0, 0}), large);
     }
 
     template <class Work>
@@ -433,8 +443,8 @@ private:
 
     void refuseDamaged() {
         const Solid solid = ball({0, 0, 0}, 8);
-        const std::string image = testing::niftiFile(
-            testing::distanceScan(solid.shape, obliqueGeometry({24, 24, 24}, {1, 1, 1}, solid)));
+        const std::string image =
+            niftiFile(distanceScan(solid, obliqueGeometry({24, 24, 24}, {1, 1, 1}, solid)));
         addRefused("image cut short",
                    [&] { readVolume(writeImage(image.substr(0, image.size() - 1000))); });
         addRefused("image whose axes are one line", [&] {

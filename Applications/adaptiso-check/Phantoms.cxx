@@ -1,13 +1,48 @@
-#include "Support/ScannedPhantoms.h"
+#include "Phantoms.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
 
-namespace adaptiso::testing {
+namespace adaptiso::checker::selftest {
 namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Turns about an axis through the origin [Rodrigues' formula].
+Mat3 rotation(const Vec3& axis, double radians) {
+    const Vec3 u = normalized(axis);
+    const auto turned = [&](const Vec3& v) {
+        return std::cos(radians) * v + std::sin(radians) * cross(u, v) +
+               (1 - std::cos(radians)) * dot(u, v) * u;
+    };
+    return {{{turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})}}};
+}
+
+/// The middle of the volume lies at the origin.
+ImageGeometry centredGeometry(const Index3& size, const Mat3& indexToPhysical) {
+    ImageGeometry geometry;
+    geometry.size = size;
+    geometry.indexToPhysical = indexToPhysical;
+    geometry.originMm = -(indexToPhysical * Vec3{static_cast<double>(size[0] - 1) / 2,
+                                                 static_cast<double>(size[1] - 1) / 2,
+                                                 static_cast<double>(size[2] - 1) / 2});
+    return geometry;
+}
+
+/// The next of a stream of random numbers [Steele2014, SplitMix64]: the same on every platform.
+std::uint64_t nextRandom(std::uint64_t& state) {
+    std::uint64_t z = (state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
 
 /// Normally distributed as near as matters here, mean 0, deviation 1: twelve uniform numbers less
 /// six, so that no library's logarithm has a say.
@@ -37,7 +72,7 @@ Volume scanned(const ImageGeometry& geometry, Value&& value) {
 }
 
 /// Share of the voxel at `index` that lies in the solid.
-double shareInside(const Shape& solid, const ImageGeometry& geometry, const Vec3& index) {
+double shareInside(const Solid& solid, const ImageGeometry& geometry, const Vec3& index) {
     constexpr int kSteps = 8;  // along each axis: steps of 0.06 mm
     const double halfDiagonalMm = 0.5 * norm(geometry.spacingMm());
     const double depthMm = solid.depthMm(geometry.toPhysical(index));
@@ -59,7 +94,35 @@ void put(std::string& header, std::size_t at, T value) {
 
 }  // namespace
 
-Volume distanceScan(const Shape& solid, const ImageGeometry& geometry) {
+Solid ball(const Vec3& centreMm, double radiusMm) {
+    return {[=](const Vec3& p) { return radiusMm - norm(p - centreMm); },
+            4 * kPi / 3 * std::pow(radiusMm, 3),
+            4 * kPi * radiusMm * radiusMm,
+            0,
+            centreMm,
+            radiusMm};
+}
+
+Solid ring(const Vec3& centreMm, double majorRadiusMm, double minorRadiusMm) {
+    return {[=](const Vec3& p) {
+                const Vec3 d = p - centreMm;
+                return minorRadiusMm - std::hypot(std::hypot(d.x, d.y) - majorRadiusMm, d.z);
+            },
+            2 * kPi * kPi * majorRadiusMm * minorRadiusMm * minorRadiusMm,
+            4 * kPi * kPi * majorRadiusMm * minorRadiusMm,
+            1,
+            centreMm,
+            std::min(minorRadiusMm, majorRadiusMm - minorRadiusMm)};
+}
+
+ImageGeometry obliqueGeometry(const Index3& size, const Vec3& spacingMm, const Solid& solid) {
+    ImageGeometry geometry = centredGeometry(
+        size, rotation({1, 2, 3}, 0.7) * Mat3::diagonal(spacingMm.x, spacingMm.y, spacingMm.z));
+    geometry.originMm += solid.centreMm;
+    return geometry;
+}
+
+Volume distanceScan(const Solid& solid, const ImageGeometry& geometry) {
     return scanned(geometry, [&](const Vec3& index) {
         return kDistanceSurface + kDistancePerMm * solid.depthMm(geometry.toPhysical(index));
     });
@@ -70,12 +133,12 @@ Volume bearingBalls(double diameterMm) {
     constexpr double kVoxelMm = 0.5, kGapMm = 3;
     // not on the lattice: a quarter of a voxel beside it along every axis
     const double shift = 0.5 * (diameterMm + kGapMm);
-    const std::array balls{sphere({-shift + 0.12, 0.13, 0.11}, diameterMm / 2),
-                           sphere({shift + 0.12, 0.13, 0.11}, diameterMm / 2)};
+    const std::array balls{ball({-shift + 0.12, 0.13, 0.11}, diameterMm / 2),
+                           ball({shift + 0.12, 0.13, 0.11}, diameterMm / 2)};
     const auto voxels = [](double mm) { return static_cast<std::int64_t>(mm / kVoxelMm) + 9; };
     const ImageGeometry geometry =
         centredGeometry({voxels(2 * diameterMm + kGapMm), voxels(diameterMm), voxels(diameterMm)},
-                        {kVoxelMm, kVoxelMm, kVoxelMm});
+                        Mat3::diagonal(kVoxelMm, kVoxelMm, kVoxelMm));
     std::uint64_t state = 10;
     return scanned(geometry, [&](const Vec3& index) {
         const double share =
@@ -117,4 +180,4 @@ std::string niftiFile(const VolumeView& scan) {
     return file;
 }
 
-}  // namespace adaptiso::testing
+}  // namespace adaptiso::checker::selftest
