@@ -186,11 +186,11 @@ TakenValues takeValues(const MeshFile& input, const std::vector<PointData>& data
     if (data.empty() && held.empty()) return taken;
     const PointTransfer transfer(input.mesh, result);
     for (const PointArray* const array : held) {
-        taken.arrays.push_back(transfer(*array));
+        taken.arrays.push_back(transferred(*array, transfer));
         run.keptArrays.push_back(array->name);
     }
     for (std::size_t n = 0; n < data.size(); ++n) {
-        taken.data.push_back(transfer(data[n]));
+        taken.data.push_back(transferred(data[n], transfer));
         run.data[n].arrays = std::ssize(data[n].arrays);
         run.data[n].areLabels =
             std::all_of(data[n].arrays.begin(), data[n].arrays.end(),

@@ -12,6 +12,7 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/Extraction/PointTransfer.h"
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
@@ -142,32 +143,10 @@ struct PageFrame {
 
 PageFrame pageFrame(const MeshFile& input);
 
-/// Takes values at the points of a surface to those of another that lies near it.
-///
-/// Numbers and colours are mixed of the values at the corners of the nearest triangle, by the
-/// barycentric weights of the nearest place on it; a value that is not a number counts only where
-/// its corner has a weight. Whole numbers, which may be labels, are those of the nearest corner of
-/// that triangle.
-class PointTransfer {
-public:
-    /// Both must outlive it. \pre as nearestPoints()
-    PointTransfer(const TriangleMesh& from, const TriangleMesh& to);
-
-    PointArray operator()(const PointArray& array) const;
-    PointData operator()(const PointData& data) const;
-
-private:
-    template <class T>
-    std::vector<T> mixed(const std::vector<T>& values, std::size_t columns) const;
-    template <class T>
-    std::vector<T> nearest(const std::vector<T>& values, std::size_t columns) const;
-    std::vector<Color> mixed(const std::vector<Color>& colors) const;
-    VertexId nearestCorner(std::size_t point) const;
-
-    const TriangleMesh& from_;
-    const TriangleMesh& to_;
-    std::vector<SurfacePoint> places_;  ///< of the points of `to` on `from`
-};
+/// Values at the points of the input as the result has them. Numbers and colours are mixed; whole
+/// numbers, which may be labels, are those of the nearest corner.
+PointArray transferred(const PointArray& array, const PointTransfer& transfer);
+PointData transferred(PointData data, const PointTransfer& transfer);
 
 /// A surface as written, and what it is checked against.
 struct VerifiedSurface {

@@ -9,10 +9,10 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "FilterRun.h"
+#include "adaptiso/Extraction/PointTransfer.h"
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/VtkAdaptor/VtkAdaptor.h"
 
@@ -20,7 +20,7 @@ vtkStandardNewMacro(vtkAdaptisoSimplify);
 
 namespace {
 
-using adaptiso::SurfacePoint;
+using adaptiso::PointTransfer;
 using adaptiso::TriangleMesh;
 
 /// Numbers on a scale, or colours; not labels.
@@ -32,40 +32,27 @@ bool canBeMixed(const vtkAbstractArray* values) {
            (type == VTK_UNSIGNED_CHAR && (components == 3 || components == 4));
 }
 
-/// The corner of `place`'s triangle that lies nearest to `point`.
-vtkIdType nearestCorner(const TriangleMesh& mesh, const SurfacePoint& place,
-                        const adaptiso::Vec3& point) {
-    const auto isNearer = [&](vtkIdType a, vtkIdType b) {
-        return squaredNorm(mesh.points[a] - point) < squaredNorm(mesh.points[b] - point);
-    };
-    const adaptiso::Triangle& corners = mesh.triangles[place.triangle];
-    return *std::min_element(corners.begin(), corners.end(), isNearer);
-}
-
-/// The values of `input`'s points at those of `result`, which lie nearest to `places`.
-vtkSmartPointer<vtkAbstractArray> carried(vtkAbstractArray* from, const TriangleMesh& input,
-                                          const TriangleMesh& result,
-                                          const std::vector<SurfacePoint>& places) {
+vtkSmartPointer<vtkAbstractArray> carried(vtkAbstractArray* from, const PointTransfer& transfer) {
     auto to = vtkSmartPointer<vtkAbstractArray>::Take(from->NewInstance());
     to->SetName(from->GetName());
     to->SetNumberOfComponents(from->GetNumberOfComponents());
     to->CopyComponentNames(from);
-    to->SetNumberOfTuples(std::ssize(places));
+    to->SetNumberOfTuples(static_cast<vtkIdType>(transfer.size()));
     vtkNew<vtkIdList> corners;
     const bool isMixed = canBeMixed(from);
-    for (std::size_t p = 0; p < places.size(); ++p) {
+    for (std::size_t p = 0; p < transfer.size(); ++p) {
         const auto point = static_cast<vtkIdType>(p);
         if (!isMixed) {
-            to->SetTuple(point, nearestCorner(input, places[p], result.points[p]), from);
+            to->SetTuple(point, transfer.nearestCorner(p), from);
             continue;
         }
         // a corner without weight may hold NaN
         corners->Reset();
         double weights[3];
         for (int c = 0; c < 3; ++c) {
-            if (places[p].weight[c] == 0) continue;
-            weights[corners->GetNumberOfIds()] = places[p].weight[c];
-            corners->InsertNextId(input.triangles[places[p].triangle][c]);
+            if (transfer.weights(p)[c] == 0) continue;
+            weights[corners->GetNumberOfIds()] = transfer.weights(p)[c];
+            corners->InsertNextId(transfer.corners(p)[c]);
         }
         to->InterpolateTuple(point, corners, from, weights);
     }
@@ -74,7 +61,7 @@ vtkSmartPointer<vtkAbstractArray> carried(vtkAbstractArray* from, const Triangle
 
 void carryPointData(vtkPointData& from, const TriangleMesh& input, const TriangleMesh& result,
                     vtkPointData& to) {
-    const std::vector<SurfacePoint> places = adaptiso::nearestPoints(result, input);
+    const PointTransfer transfer(input, result);
     for (int n = 0; n < from.GetNumberOfArrays(); ++n) {
         vtkAbstractArray* const array = from.GetAbstractArray(n);
         const int attribute = from.IsArrayAnAttribute(n);
@@ -82,7 +69,7 @@ void carryPointData(vtkPointData& from, const TriangleMesh& input, const Triangl
             to.GetNormals()->SetName(array->GetName());
             continue;
         }
-        const int place = to.AddArray(carried(array, input, result, places));
+        const int place = to.AddArray(carried(array, transfer));
         if (attribute >= 0) to.SetActiveAttribute(place, attribute);
     }
 }

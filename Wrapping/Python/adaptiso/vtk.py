@@ -316,10 +316,7 @@ def _mesh_of(data: Any) -> Mesh:
 
 
 def _carry_point_data(given: Any, mesh: Mesh, made: Mesh, output: Any) -> None:
-    triangles, weights = _adaptiso.nearest_points(made._data, mesh._data)
-    corners = mesh.faces[triangles]
-    away = np.square(mesh.vertices[corners] - made.vertices[:, None]).sum(axis=2)
-    nearest = corners[np.arange(len(corners)), away.argmin(axis=1)]
+    corners, weights, nearest = _adaptiso.point_transfer(made._data, mesh._data)
     for n in range(given.GetNumberOfArrays()):
         values, attribute = given.GetAbstractArray(n), given.IsArrayAnAttribute(n)
         if attribute == vtkDataSetAttributes.NORMALS:  # simplify() has them

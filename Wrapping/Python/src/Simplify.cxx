@@ -14,6 +14,7 @@
 #include "MeshData.h"
 #include "OptionRows.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/Extraction/PointTransfer.h"
 
 namespace adaptiso::python {
 namespace {
@@ -53,25 +54,29 @@ py::tuple simplifyMesh(const MeshData& data, SimplifyOptions options, int thread
     return py::make_tuple(std::move(made), found);
 }
 
-/// Nearest point of `onto` for each vertex of `mesh`: triangles (n) and corners' weights (n, 3).
-py::tuple nearestOf(const MeshData& mesh, const MeshData& onto) {
-    std::vector<SurfacePoint> places;
-    runUnlocked(0, [&] { places = nearestPoints(mesh.mesh(), onto.mesh()); });
-    const auto count = static_cast<py::ssize_t>(places.size());
-    py::array_t<std::int64_t> triangles(count);
+/// Where values at the vertices of `from` are to be read for those of `to`: corners of triangles
+/// (n, 3), their weights (n, 3), and of each three the nearest (n).
+py::tuple transferOf(const MeshData& to, const MeshData& from) {
+    std::optional<PointTransfer> transfer;
+    runUnlocked(0, [&] { transfer.emplace(from.mesh(), to.mesh()); });
+    const auto count = static_cast<py::ssize_t>(transfer->size());
+    py::array_t<std::int64_t> corners({count, py::ssize_t{3}}), nearest(count);
     py::array_t<double> weights({count, py::ssize_t{3}});
     for (py::ssize_t n = 0; n < count; ++n) {
-        const SurfacePoint& place = places[static_cast<std::size_t>(n)];
-        triangles.mutable_at(n) = place.triangle;
-        for (int c = 0; c < 3; ++c) weights.mutable_at(n, c) = place.weight[c];
+        const auto point = static_cast<std::size_t>(n);
+        nearest.mutable_at(n) = transfer->nearestCorner(point);
+        for (int c = 0; c < 3; ++c) {
+            corners.mutable_at(n, c) = transfer->corners(point)[c];
+            weights.mutable_at(n, c) = transfer->weights(point)[c];
+        }
     }
-    return py::make_tuple(triangles, weights);
+    return py::make_tuple(corners, weights, nearest);
 }
 
 }  // namespace
 
 void declareSimplify(py::module_& module) {
-    module.def("nearest_points", nearestOf, py::arg("mesh"), py::arg("onto"));
+    module.def("point_transfer", transferOf, py::arg("to"), py::arg("from_"));
     module.def(
         "simplify_mesh",
         [](const MeshData& mesh, const py::dict& options, int threads, py::object progress) {
