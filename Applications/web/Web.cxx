@@ -26,6 +26,7 @@
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/ImageIO/ListSeries.h"
+#include "adaptiso/Json/OptionsJson.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -347,13 +348,17 @@ EMSCRIPTEN_KEEPALIVE const char* adaptisoAnswer() {
     return web::answer.c_str();
 }
 
-/// \param volumeIndex  < 0: the image holds one volume  \param series  may be empty
-EMSCRIPTEN_KEEPALIVE int adaptisoOpenImage(const char* path, int volumeIndex, const char* series,
-                                           int isLabels) {
+/// \param read  a JSON object of options of readOptions() by name
+EMSCRIPTEN_KEEPALIVE int adaptisoOpenImage(const char* path, const char* read, int isLabels) {
     return web::answering(isLabels != 0 ? "adaptiso-labels" : "adaptiso-mesh", [&] {
+        const adaptiso::Json given = adaptiso::Json::parse(read);
         adaptiso::ReadOptions options;
-        if (volumeIndex >= 0) options.volumeIndex = volumeIndex;
-        if (*series != '\0') options.series = series;
+        for (const auto& row : adaptiso::readOptions()) {
+            const auto value = given.find(std::string(row.facts.name));
+            if (value != given.end()) {
+                row.put(options, adaptiso::optionValue(*value, row.kind));
+            }
+        }
         web::openImage(path, options, isLabels != 0);
     });
 }

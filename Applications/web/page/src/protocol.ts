@@ -13,12 +13,14 @@ export interface RunRequest {
   folders: string[];
 }
 
+/** What is read of an image: the programs' options by name. */
+export type ReadOptions = Readonly<Record<string, number | string>>;
+
 export interface OpenRequest {
   kind: "open";
   files: InputFile[];
   path: string;
-  volumeIndex: number;
-  series: string;
+  read: ReadOptions;
   isLabels: boolean;
 }
 export interface PreviewRequest { kind: "preview"; isovalue: number }

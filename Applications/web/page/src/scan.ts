@@ -3,7 +3,7 @@ import { byId, formatBytes, make } from "./dom";
 import { asInput, kSlices } from "./drop";
 import { Cancelled, type Looker, Refused } from "./engine";
 import { nifti } from "./nifti";
-import type { ImageFacts, InputFile, Series } from "./protocol";
+import type { ImageFacts, InputFile, ReadOptions, Series } from "./protocol";
 import { kMostMemory, kProgramBytes, type Page, type Task, tooLarge } from "./task";
 
 /** Size after unpacking, bytes: gzip ends with the length of its last member, modulo 4 GiB. */
@@ -20,8 +20,7 @@ export class Scan {
   files: InputFile[] = [];
   path = "";
   facts: ImageFacts | undefined;
-  private volumeIndex = -1;
-  private series = "";
+  private read: ReadOptions = {};
   readonly looker: Looker;
   private readonly listeners: (() => void)[] = [];
 
@@ -35,28 +34,27 @@ export class Scan {
 
   /** Arguments of every program that reads it. */
   get readArgs(): string[] {
-    return [...(this.volumeIndex >= 0 ? ["--volume-index", String(this.volumeIndex)] : []),
-      ...(this.series !== "" ? ["--series", this.series] : [])];
+    return Object.entries(this.read).flatMap(([name, value]) => [`--${name}`, String(value)]);
   }
 
   /** Opens what was given on a tab; where it is refused, the tab says why and offers the choice that is needed. */
-  async take(task: Task, given: InputFile[], isLabels = false, volumeIndex = -1, series = ""): Promise<boolean> {
+  async take(task: Task, given: InputFile[], isLabels = false, read: ReadOptions = {}): Promise<boolean> {
     task.refuse("");
-    const refused = await this.open(task, given, { isLabels, volumeIndex, series }), choices: HTMLElement[] = [];
+    const refused = await this.open(task, given, isLabels, read), choices: HTMLElement[] = [];
     if (refused === undefined) return this.facts !== undefined;
     const { line } = refused;
-    const add = (label: string, index: () => number, number: string): void => {
+    const add = (label: string, chosen: () => ReadOptions): void => {
       const button = make("button", { type: "button" }, label);
-      button.addEventListener("click", () => this.take(task, given, isLabels, index(), number));
+      button.addEventListener("click", () => this.take(task, given, isLabels, chosen()));
       choices.push(button);
     };
     if (refused.volumes !== null) {
       const box = make("input", { type: "number", min: "0", max: String(refused.volumes - 1), value: "0" });
       choices.push(make("label", {}, "Volume ", box));
-      add("Open it", () => Number(box.value), "");
+      add("Open it", () => ({ "volume-index": Number(box.value) }));
     } else if (refused.series.length > 0) {
       choices.push(make("p", {}, make("strong", {}, `${refused.series.length} series: choose one`)));
-      for (const each of refused.series.filter(({ fault }) => fault === "")) add(rowOf(each), () => -1, String(each.number));
+      for (const each of refused.series.filter(({ fault }) => fault === "")) add(rowOf(each), () => ({ series: String(each.number) }));
       choices.push(make("details", {}, make("summary", {}, "More of each"),
         make("ul", {}, ...refused.series.map((each) => make("li", {}, moreOf(each))))));
       task.refuse("", choices);  // it is a question
@@ -67,8 +65,7 @@ export class Scan {
   }
 
   /** \return why not; nothing: it is open, or another was asked for meanwhile. A refused one changes nothing */
-  private async open(task: Task, given: InputFile[], { isLabels, volumeIndex, series }: { isLabels: boolean; volumeIndex: number;
-      series: string }): Promise<Refused | undefined> {
+  private async open(task: Task, given: InputFile[], isLabels: boolean, read: ReadOptions): Promise<Refused | undefined> {
     const turn = ++this.turn;
     this.isReading = true;
     for (const listener of this.listeners) listener();
@@ -81,10 +78,10 @@ export class Scan {
       const bytes = (await Promise.all(files.map(unpackedBytes))).reduce((sum, each) => sum + each, 0);
       const need = kProgramBytes + bytes;
       if (need > kMostMemory) throw new Refused(tooLarge(path, need, "adaptiso-mesh, or adaptiso-giant"), 3);
-      const { facts, shades } = await this.looker.open({ files, path, volumeIndex, series, isLabels });
+      const { facts, shades } = await this.looker.open({ files, path, read, isLabels });
       task.cancel();
       task.part(".result").hidden = true;
-      Object.assign(this, { facts, files, path, volumeIndex, series, isReading: false });
+      Object.assign(this, { facts, files, path, read, isReading: false });
       this.tell(facts);
       for (const listener of this.listeners) listener();
       const view = await this.page.view();

@@ -105,8 +105,8 @@ function call<T = Record<string, unknown>>(instance: Instance, name: string, typ
 /** Opens the image; where it has to be chosen from several series, the refusal has them. */
 function openImage(instance: Instance, request: OpenRequest): Record<string, unknown> {
   try {
-    return call(instance, "adaptisoOpenImage", ["string", "number", "string", "number"],
-      [request.path, request.volumeIndex, request.series, request.isLabels ? 1 : 0]);
+    return call(instance, "adaptisoOpenImage", ["string", "string", "number"],
+      [request.path, JSON.stringify(request.read), request.isLabels ? 1 : 0]);
   } catch (error) {
     if (!(error instanceof Refusal) || !error.hasSeries) throw error;
     throw new Refusal(error.line, error.exitCode, null, true, call<Series[]>(instance, "adaptisoListSeries", ["string"], [request.path]));
