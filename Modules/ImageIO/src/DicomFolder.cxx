@@ -441,6 +441,8 @@ ReadVolume numberingFiles(const fs::path& input, const fs::path& folder,
         return read();
     } catch (const Shortage& error) {
         throw Shortage(numbered(error.what()));
+    } catch (const ChoiceNeeded&) {
+        throw;  // it names no slice
     } catch (const FileError& error) {
         throw FileError(numbered(error.what()));
     }

@@ -75,7 +75,9 @@ Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions&
 const Figures<AdaptiveWork>& workFigures() {
     using Of = const AdaptiveWork&;
     static const Figures<AdaptiveWork> rows{
-        {"runs", "runs of the whole simplification; 1 is the rule",
+        {"runs",
+         "runs of the whole simplification by `adaptive`; 1 is the rule. This and the next three "
+         "are `null` for other methods",
          [](Of work) { return Json(work.runs); }},
         {"placesMended", "places beyond the bound after a run, or where triangles crossed",
          [](Of work) { return Json(work.placesMended); }},
@@ -148,8 +150,7 @@ const Figures<MadeSurface>& surfaceFigures() {
          [](Of of) { return orNull(of.surface.statistics.wantedTriangles); }},
         {"countMet", "whether the file has no more; `null` without them",
          [](Of of) { return orNull(of.surface.countMet()); }},
-        {"adaptive", "work of the method `adaptive`; `null` each for other methods:",
-         [](Of of) { return workJson(of.surface.statistics.adaptiveWork); }},
+        {"adaptive", "", [](Of of) { return workJson(of.surface.statistics.adaptiveWork); }},
         {"triangles", "of the mesh written",
          [](Of of) { return Json(of.surface.topology.triangles); }, "Triangles", Shown::Count},
         {"vertices", "of the mesh written",

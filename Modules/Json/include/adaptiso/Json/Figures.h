@@ -23,7 +23,7 @@ enum class Shown {
 template <class Owner>
 struct Figure {
     std::string_view key;      ///< "blocks.size" is `size` in the object `blocks`
-    std::string_view meaning;  ///< in the README
+    std::string_view meaning;  ///< in the README; empty: an object of rows of its own
     Json (*get)(const Owner&);
     std::string_view label{};  ///< a column of the page's table, with its unit: "Area, mm²"
     Shown shown = Shown::No;
@@ -71,6 +71,7 @@ template <class Owner>
 std::string figureLines(const Figures<Owner>& rows, std::string_view before) {
     std::string text;
     for (const Figure<Owner>& row : rows) {
+        if (row.meaning.empty()) continue;
         text.append("| `").append(before).append(row.key).append("` | ");
         text.append(row.meaning).append(" |\n");
     }
