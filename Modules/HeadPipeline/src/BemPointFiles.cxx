@@ -328,8 +328,10 @@ BemFileKind sourcesFile(const Source& source, const Files& files) {
     return oneFile(
         files, [=](const fs::path& path) { writeFiffSources(spacesOf(source), path); },
         [=](const fs::path& path) {
-            return faultUnless(std::ranges::equal(readFiffSources(path), spacesOf(source), isSame),
-                               source, "its sources are others");
+            const auto written = readFiffSources(path), wanted = spacesOf(source);
+            const bool areSame =
+                std::equal(written.begin(), written.end(), wanted.begin(), wanted.end(), isSame);
+            return faultUnless(areSame, source, "its sources are others");
         });
 }
 
