@@ -120,8 +120,6 @@ Json sharedJson(const LabelsRun& run) {
             {"warnings", run.warnings}};
 }
 
-/// "1 region", "3 regions"
-
 void printWalls(std::ostream& out, const LabelsRun& run) {
     const LabelStatistics& statistics = run.statistics;
     out << "  " << counted(run.triangles, "triangle") << ", " << formatCount(run.points)

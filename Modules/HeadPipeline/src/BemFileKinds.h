@@ -41,7 +41,7 @@ struct BemFileSource {
     }
 };
 
-/// What is wrong with files; empty: nothing.
+/// A fault of written files, and its place; empty without a fault.
 using BemFileFault = std::optional<Finding>;
 
 /// How files of one format are written and read back.

@@ -36,7 +36,7 @@ std::string bytesOf(const fs::path& path) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// How far both lists differ; infinity where one is longer, or a number is none.
+/// The largest distance of two points of one index; infinity of other lengths and of NaN.
 double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     double most = a.size() == b.size() ? 0 : HUGE_VAL;
     for (std::size_t n = 0; n < a.size() && most < HUGE_VAL; ++n) {

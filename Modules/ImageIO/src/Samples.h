@@ -72,7 +72,7 @@ struct SampleLayout {
 };
 
 /// The volume to read of a file that holds `count`.
-/// \param several  what is said of several: "is 4-D: it holds 3 volumes", where empty
+/// \param several  the refusal of several volumes; empty: "is 4-D: it holds 3 volumes"
 /// \throws FileError  there are several and none was chosen, or one that is not there
 std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t count,
                           const ReadOptions& options, const std::string& several = {});

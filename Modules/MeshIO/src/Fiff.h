@@ -73,7 +73,7 @@ std::vector<std::array<std::int32_t, 3>> toTriples(const Tag& tag);
 
 /// Integers of a list.
 std::vector<std::int32_t> toInts(const Tag& tag);
-/// What putTransform() writes, without the inverse.
+/// Reads a transform of putTransform(); the inverse behind it is passed over.
 AffineTransform toTransform(const Tag& tag);
 
 /// A point of a digitizer.

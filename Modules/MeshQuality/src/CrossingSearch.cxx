@@ -146,7 +146,7 @@ CrossingTriangles trianglesOf(const CrossingPairs& crossing) {
     return triangles;
 }
 
-/// Who keeps crossing triangles keeps those that are undecided too.
+/// The triangles that cross, and those of which it is not decided.
 std::vector<std::int64_t> allOf(const CrossingTriangles& triangles) {
     return joined({triangles.found, triangles.undecided});
 }

@@ -13,7 +13,7 @@ export interface RunRequest {
   folders: string[];
 }
 
-/** What is read of an image: the programs' options by name. */
+/** Options of reading an image, by the programs' names: { "volume-index": 2 }. */
 export type ReadOptions = Readonly<Record<string, number | string>>;
 
 export interface OpenRequest {

@@ -36,7 +36,7 @@ requires(!std::is_convertible_v<TextOf, std::string_view>) std::string
 inline std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
     return formatCount(count) + " " + std::string(count == 1 ? one : many);
 }
-/// Of a thing whose plural ends in "s".
+/// "1 piece", "12,718 pieces" of "piece".
 inline std::string counted(std::int64_t count, const std::string& thing) {
     return counted(count, thing, thing + "s");
 }

@@ -79,7 +79,7 @@ struct BemModelOptions {
     bool hasSkin() const { return surfaceCount() > 1; }
 };
 
-/// What a model is made from.
+/// The kind of input that a head model is made from.
 enum class BemSource { T1, Labels, Probabilities, Ct, Surfaces };
 
 /// "t1", "labels", "probabilities", "ct", "surfaces": the options of these names.
