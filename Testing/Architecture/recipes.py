@@ -1,5 +1,5 @@
 """The recipes of CONTRIBUTING.md, followed on a copy of a module's sources: a mesh format and a label table are three
-files each, a check and its option two. What changed is compiled as the build folder compiles its like, and linked
+files each, as are a check and its option. What changed is compiled as the build folder compiles its like, and linked
 before the module's library into its unit tests.
 
 recipes.py SOURCE BUILD NINJA mesh|labels|check"""
@@ -109,13 +109,14 @@ def check(copy: Copy) -> list:
     copy.insert("src/Checks.cxx", "kArea, ", "kGenus,")
     copy.insert("src/Checks.cxx", "addUnless(kArea, facts_.areaMm2 > rules_.maxAreaMm2.value_or(facts_.areaMm2), \"too large\");\n",
                 "        const auto genus =")
-    copy.insert("src/Checks.cxx", """option<&CheckRules::maxAreaMm2>({.name = "max-area", .key = "maxAreaMm2", .valueName = "MM2",
+    copy.insert("src/CheckRules.cxx", """option<&CheckRules::maxAreaMm2>({.name = "max-area", .key = "maxAreaMm2", .valueName = "MM2",
         .help = "Largest area that passes", .rule = {.least = 0, .unit = "mm2"}}),\n""",
                 "        option<&CheckRules::maxOffMm>(")
     like = copy.original / "src" / "Checks.cxx"
     test = next(path for path in copy.commands if path.name == "ChecksTest.cxx")
     copy.run_tests([copy.compile(RECIPES / "AreaTest.cxx", test), copy.compile(test, test),
-                    copy.compile(copy.folder / copy.module / "src" / "Checks.cxx", like)], "-*OfTheirPage")
+                    *(copy.compile(copy.folder / copy.module / "src" / name, like)
+                      for name in ("Checks.cxx", "CheckRules.cxx", "SurfaceFacts.cxx"))], "-*OfTheirPage")
     return copy.touched()
 
 

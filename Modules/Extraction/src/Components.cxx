@@ -226,7 +226,7 @@ ComponentLabels labelComponents(const TriangleMesh& mesh) {
 }
 
 const Options<ComponentSelection>& pieceOptions() {
-    static const Options<ComponentSelection> rows{
+    static const Options<ComponentSelection> kRows{
         option<&ComponentSelection::largestOnly>(
             {.name = "largest",
              .key = "largest",
@@ -245,7 +245,7 @@ const Options<ComponentSelection>& pieceOptions() {
              .key = "fillCavities",
              .label = "Cavities filled",
              .help = "Drop inner surfaces, and all that lies inside them"})};
-    return rows;
+    return kRows;
 }
 
 TriangleMesh selectComponents(const TriangleMesh& mesh, const ComponentSelection& selection) {

@@ -25,7 +25,7 @@ std::string_view toString(Method method) {
 }
 
 const Options<ExtractionOptions>& methodOptions() {
-    static const Options<ExtractionOptions> rows{option<&ExtractionOptions::method>(
+    static const Options<ExtractionOptions> kRows{option<&ExtractionOptions::method>(
         {.name = "method",
          .key = "method",
          .label = "Method",
@@ -37,11 +37,11 @@ const Options<ExtractionOptions>& methodOptions() {
              "voxel at full resolution",
          .standard = "adaptive",
          .words = kMethods})};
-    return rows;
+    return kRows;
 }
 
 const Options<DiscretizedOptions>& discretizedOptions() {
-    static const Options<DiscretizedOptions> rows{
+    static const Options<DiscretizedOptions> kRows{
         option<&DiscretizedOptions::adjustVertices>(
             {.name = "adjust-vertices",
              .key = "adjustVertices",
@@ -51,7 +51,7 @@ const Options<DiscretizedOptions>& discretizedOptions() {
             {.name = "merge-within-blocks",
              .key = "mergeWithinBlocks",
              .help = "Merge facets of the method dmc within blocks of --block-size voxels only"})};
-    return rows;
+    return kRows;
 }
 
 namespace {

@@ -135,12 +135,12 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
 }  // namespace
 
 const Options<SimplifyOptions>& borderOptions() {
-    static const Options<SimplifyOptions> rows{option<&SimplifyOptions::keepBorders>(
+    static const Options<SimplifyOptions> kRows{option<&SimplifyOptions::keepBorders>(
         {.name = "keep-borders",
          .key = "keepBorders",
          .label = "Open borders kept",
          .help = "Leave the points of open borders where they are, to the bit"})};
-    return rows;
+    return kRows;
 }
 
 Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {

@@ -148,7 +148,7 @@ Fault faultOfCombinations(const BemModelOptions& options, const BemRequest& requ
 }  // namespace
 
 const Options<BoundaryOptions>& boundaryOptions() {
-    static const Options<BoundaryOptions> rows{
+    static const Options<BoundaryOptions> kRows{
         option<&BoundaryOptions::sulciMm>(
             {.name = "sulci",
              .key = "sulciMm",
@@ -226,7 +226,7 @@ const Options<BoundaryOptions>& boundaryOptions() {
                                           .help = "CT: isovalue of skin",
                                           .standard = "-300",
                                           .rule = {.unit = "HU"}})};
-    return rows;
+    return kRows;
 }
 
 bool setLayers(BemModelOptions& options, std::int64_t layers) {

@@ -14,7 +14,7 @@ bool isSeries(std::string_view text) {
 }  // namespace
 
 const Options<ReadOptions>& readOptions() {
-    static const Options<ReadOptions> rows{
+    static const Options<ReadOptions> kRows{
         option<&ReadOptions::series>(
             {.name = "series",
              .key = "series",
@@ -53,7 +53,7 @@ const Options<ReadOptions>& readOptions() {
              .key = "resampleSlices",
              .help = "Blend unevenly spaced DICOM slices linearly onto even steps, in place of "
                      "refusing them"})};
-    return rows;
+    return kRows;
 }
 
 }  // namespace adaptiso

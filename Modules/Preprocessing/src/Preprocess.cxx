@@ -173,7 +173,7 @@ std::string_view toString(Interpolation interpolation) {
 }
 
 const Options<PreprocessOptions>& filterOptions() {
-    static const Options<PreprocessOptions> rows{
+    static const Options<PreprocessOptions> kRows{
         option<&PreprocessOptions::smoothSigmaMm>(
             {.name = "smooth",
              .key = "smoothSigmaMm",
@@ -194,7 +194,7 @@ const Options<PreprocessOptions>& filterOptions() {
                      "nearest (for labels)",
              .standard = "linear",
              .words = kInterpolations})};
-    return rows;
+    return kRows;
 }
 
 ImageGeometry isotropicGrid(const ImageGeometry& geometry, double stepMm) {

@@ -87,7 +87,7 @@ std::string_view toString(BlockSearchKind kind) {
 }
 
 const Options<IndexOptions>& indexOptions() {
-    static const Options<IndexOptions> rows{
+    static const Options<IndexOptions> kRows{
         option<&IndexOptions::blockSize>(
             {.name = "block-size",
              .key = "blockSize",
@@ -109,7 +109,7 @@ const Options<IndexOptions>& indexOptions() {
                      "and maxima, octree, or a look at every block. The surface is the same",
              .standard = "kdtree",
              .words = kSearches})};
-    return rows;
+    return kRows;
 }
 
 SpanSpaceIndex::SpanSpaceIndex(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -1,87 +1,17 @@
 #include "adaptiso/SurfaceChecks/Checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
-#include "adaptiso/MeshQuality/Winding.h"
 
 namespace adaptiso {
 
 namespace {
-
-void detachBadIndices(TriangleMesh& mesh) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    const auto count = static_cast<VertexId>(mesh.points.size());
-    mesh.points.push_back({kNan, kNan, kNan});
-    mesh.normals.clear();
-    for (Triangle& t : mesh.triangles) {
-        if (std::any_of(t.begin(), t.end(), [&](VertexId v) { return v < 0 || v >= count; })) {
-            t = {count, count, count};
-        }
-    }
-}
-
-std::int64_t countRepeatedIndices(const TriangleMesh& mesh) {
-    return std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [](const Triangle& t) {
-        return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-    });
-}
-
-}  // namespace
-
-bool SurfaceFacts::isSoup() const {
-    return topology.triangles > 1 && duplicates.vertexCount > 0 &&
-           topology.count(TopologyDefect::BoundaryEdge) == 3 * topology.triangles;
-}
-
-SurfaceFacts measureSurface(TriangleMesh& mesh, const SizeLimits& sizeLimits,
-                            std::int64_t maxPairs) {
-    SurfaceFacts facts;
-    facts.topology = checkTopology(mesh);
-    facts.repeatedIndexTriangles = countRepeatedIndices(mesh);
-    if (facts.topology.count(TopologyDefect::IndexOutOfRange) > 0) detachBadIndices(mesh);
-
-    double volume = 0;
-    for (const SurfaceComponent& component : facts.topology.components) {
-        facts.areaMm2 += component.areaMm2;
-        volume += component.signedVolumeMm3;
-    }
-    if (facts.topology.isWatertight()) {
-        facts.volumeMm3 = volume;
-        if (facts.topology.count(TopologyDefect::NonFiniteVertex) == 0) {
-            facts.insideOut = findInsideOutPieces(mesh, facts.topology);
-        }
-    }
-    facts.duplicates = findDuplicates(mesh);
-    facts.intersections = findSelfIntersections(mesh, {.maxPairs = maxPairs});
-    if (!facts.intersections.pairs.empty()) {
-        const auto& [a, b, c] = mesh.triangles[facts.intersections.pairs.front()[0]];
-        facts.firstCrossingMm = 1.0 / 3 * (mesh.points[a] + mesh.points[b] + mesh.points[c]);
-    }
-    facts.shape = measureShape(mesh);
-    facts.size = judgeSize(mesh, sizeLimits);
-    facts.solidAngle = solidAngleFromMean(mesh);
-    return facts;
-}
-
-void measureWallsOf(const TriangleMesh& mesh, double limitMm, SurfaceFacts& facts) {
-    if (!facts.insideOut || !facts.insideOut->empty()) return;
-    facts.walls = measureWalls(mesh, limitMm);
-}
-
-std::string wallText(const WallReport& walls) {
-    constexpr double kEdgeMm = 0.01;  // what sharp edges run out to
-    return walls.leastMm < kEdgeMm ? "below 0.01 mm" : formatFixed(walls.leastMm, 2) + " mm";
-}
-
-namespace {
-
-constexpr std::array<std::string_view, 3> kProfiles{"bem", "print", "view"};
 
 constexpr CheckRule kFinite{"finiteCoordinates",
                             "finite coordinates",
@@ -547,81 +477,6 @@ bool CheckRule::isRequiredBy(Profile profile) const {
 
 std::span<const CheckRule> checkRules() {
     return kCheckRules;
-}
-
-std::string_view toString(Profile profile) {
-    return kProfiles[static_cast<std::size_t>(profile)];
-}
-
-CheckRules CheckRules::inUse() const {
-    CheckRules rules = *this;
-    rules.profile = profileInUse();
-    rules.minGapMm = minGapMm.value_or(kDefaultMinGapMm);
-    rules.minAngleDeg = minAngleDeg.value_or(kLeastAngleDeg);
-    if (measuresWalls) rules.minWallMm = wallLimitMm();
-    return rules;
-}
-
-const Options<CheckRules>& ruleOptions() {
-    static const Options<CheckRules> rows{
-        option<&CheckRules::profile>(
-            {.name = "profile",
-             .key = "profile",
-             .label = "Profile",
-             .help = "bem: a boundary of a head model (default with --nested); print: a solid "
-                     "(default); view: to look at. See below",
-             .words = kProfiles}),
-        option<&CheckRules::minGapMm>(
-            {.name = "min-gap",
-             .key = "minGapMm",
-             .label = "Smallest gap",
-             .valueName = "MM",
-             .help = "With --nested: smallest gap between neighbours that passes, in any profile",
-             .standard = "0.5, in bem only",
-             .rule = {.least = 0, .unit = "mm"}}),
-        option<&CheckRules::minAngleDeg>(
-            {.name = "min-angle",
-             .key = "minAngleDeg",
-             .label = "Smallest angle",
-             .valueName = "DEG",
-             .help = "Smallest angle of a triangle that passes, in any profile",
-             .standard = "1, in bem only",
-             .rule = {.least = 0, .most = 60, .unit = "degrees"}}),
-        option<&CheckRules::minWallMm>(
-            {.name = "min-wall",
-             .key = "minWallMm",
-             .label = "Thinnest wall",
-             .valueName = "MM",
-             .help = "Thinnest wall that passes, in any profile",
-             .standard = "with --profile print as given a warning below 0.8",
-             .rule = {.least = 0, .isAbove = true, .unit = "mm"}}),
-        option<&CheckRules::maxOffMm>(
-            {.name = "max-off",
-             .key = "maxOffMm",
-             .label = "Farthest from the isosurface",
-             .valueName = "MM",
-             .help = "With --iso: largest distance from the isosurface that passes",
-             .standard = "the mean within half a voxel",
-             .rule = {.least = 0, .unit = "mm"}})};
-    return rows;
-}
-
-const Options<CheckRules>& pairOptions() {
-    static const Options<CheckRules> rows{option<&CheckRules::maxPairs>(
-        {.name = "max-pairs",
-         .key = "maxPairs",
-         .valueName = "N",
-         .help = "List up to so many pairs of triangles that cross in the report; all are "
-                 "counted",
-         .standard = "1000",
-         .rule = {.most = 1e9}})};
-    return rows;
-}
-
-SizeLimits sizeLimitsOf(Profile profile) {
-    // MNE refuses heads with a side under 50 mm; no head with its neck is larger than 500 mm
-    if (profile == Profile::Bem) return {50, 50, 500};
-    return {0, 1, 2000};  // from a tooth to a whole body
 }
 
 bool allHold(const std::vector<Check>& checks) {

@@ -74,7 +74,7 @@ Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions&
 
 const Figures<AdaptiveWork>& workFigures() {
     using Of = const AdaptiveWork&;
-    static const Figures<AdaptiveWork> rows{
+    static const Figures<AdaptiveWork> kRows{
         {"runs",
          "runs of the whole simplification by `adaptive`; 1 is the rule. This and the next three "
          "are `null` for other methods",
@@ -85,7 +85,7 @@ const Figures<AdaptiveWork>& workFigures() {
          [](Of work) { return Json(work.verticesUndone); }},
         {"trianglesKept", "triangles at full resolution, for nothing could be simplified there",
          [](Of work) { return Json(work.trianglesKept); }}};
-    return rows;
+    return kRows;
 }
 
 Json workJson(const std::optional<AdaptiveWork>& work) {
@@ -99,7 +99,7 @@ Json workJson(const std::optional<AdaptiveWork>& work) {
 const Figures<MadeSurface>& surfaceFigures() {
     using Of = const MadeSurface&;
     using Defect = TopologyDefect;
-    static const Figures<MadeSurface> rows{
+    static const Figures<MadeSurface> kRows{
         {"isovalue", "the isovalue", [](Of of) { return Json(of.surface.isovalue); }, "Isovalue",
          Shown::Plain},
         {"isovalueChosenBy", "`\"user\"` or `\"otsu\"`",
@@ -199,7 +199,7 @@ const Figures<MadeSurface>& surfaceFigures() {
          "cavities that face outward; 0 for `adaptive`, or nothing is written; a warning with "
          "other methods; `null` if it is open",
          [](Of of) { return orNull(of.surface.insideOutPieces); }}};
-    return rows;
+    return kRows;
 }
 
 }  // namespace adaptiso
