@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <iomanip>
 #include <ostream>
 #include <string>
@@ -196,9 +197,12 @@ void addOptions(const CompareRun& run, Report& report) {
 }
 
 ReportTable distanceTable(const CompareRun& run) {
-    ReportTable table{"Distances, mm", {"direction"}, {}};
-    for (const LengthFigure& row : lengthFigures()) table.columns.emplace_back(row.label);
-    table.columns.emplace_back("mean angle between the surfaces");
+    ReportTable table{"Distances, mm", {"Direction"}, {}};
+    for (const LengthFigure& row : lengthFigures()) {
+        std::string& column = table.columns.emplace_back(row.label);
+        column.front() = static_cast<char>(std::toupper(column.front()));
+    }
+    table.columns.emplace_back("Angle between the surfaces, mean");
     const auto add = [&](const std::string& name, const DistanceStatistics& statistics) {
         std::vector<std::string>& cells = table.rows.emplace_back();
         cells.push_back(name);

@@ -187,6 +187,7 @@ std::int64_t chooseVolume(const std::filesystem::path& file, std::int64_t count,
         chosen            ? fmt::format("there is no volume {}: it holds {}", *chosen, count)
         : several.empty() ? fmt::format("is 4-D: it holds {} volumes", count)
                           : several;
+    if (count == 1) refuse(file, fault, "leave --volume-index out");
     refuseChoice(file, fault, fmt::format("choose one: --volume-index 0 to {}", count - 1),
                  ChoiceNeeded::Among::Volumes, count);
 }

@@ -120,7 +120,8 @@ TEST(DicomVolumes, OneVolumeIsVolumeZero) {
     const TempFolder folder;
     writeVolumes(folder, 1, [](DicomBuilder&, int, int) {});
     EXPECT_NO_THROW(readVolume(folder.path(), {.volumeIndex = 0}));
-    expectRefusal(folder.path(), "there is no volume 1: it holds 1", {.volumeIndex = 1});
+    expectRefusal(folder.path(), "there is no volume 1: it holds 1; leave --volume-index out",
+                  {.volumeIndex = 1});
 }
 
 TEST(DicomVolumes, ImageTypesMayDifferWithinOneVolume) {
