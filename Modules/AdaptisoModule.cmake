@@ -66,11 +66,15 @@ function(adaptiso_compile_options target)
     endif()
 endfunction()
 
-# adaptiso_cold(<Module> <source>...): what walks over no samples and no triangles is compiled at -O1;
-# -O3 takes the compiler up to half as long again.
+# adaptiso_cold(<Module> [<source>...]): what walks over no samples and no triangles, the whole module or
+# these sources, is compiled at -O1; -O3 takes the compiler up to half as long again.
 function(adaptiso_cold name)
-    set_property(SOURCE ${ARGN} TARGET_DIRECTORY adaptiso${name} APPEND PROPERTY
-                 COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+    set(cold $<$<CONFIG:Release>:-O1>)
+    if(NOT ARGN)
+        target_compile_options(adaptiso${name} PRIVATE ${cold})
+    elseif(NOT CMAKE_UNITY_BUILD)  # a source with options of its own joins no unit, which takes longer
+        set_property(SOURCE ${ARGN} TARGET_DIRECTORY adaptiso${name} APPEND PROPERTY COMPILE_OPTIONS ${cold})
+    endif()
 endfunction()
 
 function(adaptiso_check_layers name layer)
