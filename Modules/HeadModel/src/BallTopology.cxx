@@ -258,7 +258,7 @@ Mask ballWithin(const Mask& whole, const std::vector<float>& depth, const ImageG
 }
 
 /// The smallest dilation that is a ball; at worst the whole grid but for its border.
-Mask ballAround(const std::vector<float>& depth, const Index3& size) {
+Mask ballContaining(const std::vector<float>& depth, const Index3& size) {
     Mask all(depth.size(), 0);
     for (std::int64_t k = 1; k + 1 < size[2]; ++k) {
         for (std::int64_t j = 1; j + 1 < size[1]; ++j) {
@@ -401,7 +401,7 @@ std::int64_t makeBall(std::vector<float>& part, const Index3& size) {
     unitGrid.size = size;
     const std::vector<float> depth = depthMm(whole, unitGrid, DepthBand::within(kBands.back() + 1));
     const Mask cut = grownBall(whole, part, ballWithin(whole, depth, unitGrid), size);
-    const Mask wrapped = carvedBall(whole, part, ballAround(depth, size), size);
+    const Mask wrapped = carvedBall(whole, part, ballContaining(depth, size), size);
     const std::int64_t cutVoxels = differences(cut, whole);
     const std::int64_t wrappedVoxels = differences(wrapped, whole);
     takeSides(part, cutVoxels < wrappedVoxels ? cut : wrapped);

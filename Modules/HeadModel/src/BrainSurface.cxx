@@ -1,9 +1,9 @@
 #include "BrainSurface.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "FinishBoundaries.h"
+#include "T1Head.h"
 #include "Voxelized.h"
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
@@ -11,11 +11,6 @@
 
 namespace adaptiso::headmodel {
 namespace {
-
-double cm3Of(const std::vector<float>& part, const ImageGeometry& grid) {
-    return static_cast<double>(voxelsIn(above(part, kFractionIsovalue))) *
-           std::pow(stepMm(grid), 3) / 1000;
-}
 
 void unite(std::vector<float>& part, const std::vector<float>& more) {
     for (std::size_t n = 0; n < part.size(); ++n) part[n] = std::max(part[n], more[n]);
@@ -52,10 +47,11 @@ std::vector<float> pialPart(const std::vector<TriangleMesh>& pial, const ImageGe
     for (const TriangleMesh& surface : pial) {
         constexpr double kNoClosing = 0;  // sulci are the brain solid's business
         const std::vector<float> one = surfacePart(surface, grid, kNoClosing);
-        if (cm3Of(one, grid) < 50) {
+        const double cm3 = cm3Of(above(one, kFractionIsovalue), grid);
+        if (cm3 < 50) {
             throw SourceError(
                 BoundarySource::Pial,
-                "a pial surface encloses " + shortNumber(cm3Of(one, grid)) +
+                "a pial surface encloses " + shortNumber(cm3) +
                     " cm3 of this head, must be 50 or more; is it of this head, in the "
                     "same space?");
         }

@@ -69,7 +69,7 @@ void requireHounsfield(const FloatImage& image, const BoundaryOptions& options) 
                        "rescale slope and intercept");
 }
 
-struct Head {
+struct CtHead {
     ImageGeometry grid;
     std::vector<float> hu;
     std::vector<std::uint8_t> faces;  ///< imageFaces(), 0 where something was taken off
@@ -86,7 +86,7 @@ std::pair<std::vector<T>, ImageGeometry> cutOut(const std::vector<T>& values,
 }
 
 /// A field of view holds the table too: the head with room around is half of it or less.
-void cropToSolid(Head& head, double roomMm) {
+void cropToSolid(CtHead& head, double roomMm) {
     const std::vector<float> inside(head.solid.begin(), head.solid.end());
     Index3 first, last;
     boundingIndices(inside, head.grid.size, kFractionIsovalue, first, last);
@@ -102,7 +102,7 @@ void cropToSolid(Head& head, double roomMm) {
 }
 
 /// Takes off what hangs on the head, is thin and reaches far: a head rest that touches it, a strap.
-void takeOffRest(Head& head, std::vector<std::string>& notes) {
+void takeOffRest(CtHead& head, std::vector<std::string>& notes) {
     const Mask whole = filled(head.solid, head.grid.size);
     Mask rest(whole.size(), 0);
     for (const Neck& part : findNecks(whole, head.grid, kRestMm, 0)) {
@@ -126,8 +126,8 @@ void takeOffRest(Head& head, std::vector<std::string>& notes) {
     }
 }
 
-Head findHead(const VolumeView& ct, const BoundaryOptions& options,
-              std::vector<std::string>& notes) {
+CtHead findHeadInCt(const VolumeView& ct, const BoundaryOptions& options,
+                    std::vector<std::string>& notes) {
     const FloatImage image = toFloat(ct, static_cast<float>(kAirHu));
     requireHounsfield(image, options);
     Index3 first, last;
@@ -135,7 +135,7 @@ Head findHead(const VolumeView& ct, const BoundaryOptions& options,
         throw InvalidInput("nothing is above " + shortNumber(options.skinHu) + " HU");
     }
     const double roomMm = std::max(marginMm(options), kCavityMm + 4);
-    Head head;
+    CtHead head;
     head.grid = workingGrid(image.geometry, first, last, options.stepMm, roomMm);
     head.hu = resampled(image, head.grid, static_cast<float>(kAirHu));
     head.faces = imageFaces(image.geometry, head.grid);
@@ -154,7 +154,7 @@ Head findHead(const VolumeView& ct, const BoundaryOptions& options,
 RawBoundaries rawBoundaries(const VolumeView& ct, const BoundaryOptions& options) {
     tell(options, "head", 0);
     RawBoundaries raw;
-    const Head found = findHead(ct, options, raw.notes);
+    const CtHead found = findHeadInCt(ct, options, raw.notes);
     raw.grid = found.grid;
     const auto& [grid, hu, faces, solid] = found;
     const Mask head = filledAtBorder(closed(solid, grid, options.closingMm), faces, grid.size);

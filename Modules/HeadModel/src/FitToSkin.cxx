@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "SixEquations.h"
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/PortableMath.h"
@@ -10,28 +11,6 @@
 
 namespace adaptiso {
 namespace {
-
-using Row = std::array<double, 7>;  ///< of six equations, and the right side
-using Equations = std::array<Row, 6>;
-
-/// Gauss's elimination. \pre the equations have one solution
-std::array<double, 6> solved(Equations e) {
-    for (std::size_t c = 0; c < 6; ++c) {
-        std::size_t pivot = c;
-        for (std::size_t r = c + 1; r < 6; ++r) {
-            if (std::abs(e[r][c]) > std::abs(e[pivot][c])) pivot = r;
-        }
-        std::swap(e[c], e[pivot]);
-        for (std::size_t r = 0; r < 6; ++r) {
-            if (r == c) continue;
-            const double factor = e[r][c] / e[c][c];
-            for (std::size_t k = c; k < 7; ++k) e[r][k] -= factor * e[c][k];
-        }
-    }
-    std::array<double, 6> x{};
-    for (std::size_t r = 0; r < 6; ++r) x[r] = e[r][6] / e[r][r];
-    return x;
-}
 
 /// About an axis through `pivot`, by the vector's length (radians).
 AffineTransform rotation(const Vec3& vector, const Vec3& pivot) {
@@ -105,7 +84,7 @@ private:
         std::stable_sort(pulls.begin(), pulls.end(),
                          [](const Pull& a, const Pull& b) { return a.mm < b.mm; });
         pulls.resize(kept_);
-        Equations e{};
+        SixEquations e{};
         const auto add = [&](const Vec3& at, const Vec3& along, double mm, double weight) {
             const Vec3 turn = cross(at - middle, along);
             const std::array<double, 6> row{turn.x, turn.y, turn.z, along.x, along.y, along.z};
@@ -123,7 +102,8 @@ private:
                 add(at, along, at[axis] - to[axis], weight);
             }
         }
-        const std::array<double, 6> x = solved(e);
+        // the landmarks leave no move open
+        const std::array<double, 6> x = solved(e, 0).value();
         AffineTransform step = rotation({x[0], x[1], x[2]}, middle);
         step.offset += Vec3{x[3], x[4], x[5]};
         return step;

@@ -25,19 +25,19 @@ constexpr double kSeenNasionMm = 5, kProportionMm = 50, kEarMm = 20;
 constexpr Vec3 kForward{0, -1, 0};  // LPS
 
 /// Extent of a head that proportions refer to.
-struct Frame {
+struct HeadExtent {
     double middleX, frontY, topZ, lengthMm;
 };
 
-Frame frameOf(const TriangleMesh& innerSkull) {
+HeadExtent extentOf(const TriangleMesh& innerSkull) {
     const BoundingBox box = boundingBox(innerSkull);
     return {(box.minimum.x + box.maximum.x) / 2, box.minimum.y, box.maximum.z,
             box.maximum.y - box.minimum.y};
 }
 
 /// The skin farthest in front, in the middle plane at a height.
-std::optional<Vec3> profileAt(const TriangleMesh& skin, const Frame& frame, double z) {
-    const Vec3 inside{frame.middleX, frame.frontY + frame.lengthMm / 2, z};
+std::optional<Vec3> profileAt(const TriangleMesh& skin, const HeadExtent& extent, double z) {
+    const Vec3 inside{extent.middleX, extent.frontY + extent.lengthMm / 2, z};
     const RayHits hits = rayHits(skin, inside, kForward);
     if (hits.mm.empty()) return std::nullopt;
     return inside + hits.mm.back() * kForward;
@@ -49,17 +49,17 @@ struct SeenNasion {
 };
 
 /// The deepest place between nose and forehead.
-std::optional<SeenNasion> nasionOf(const TriangleMesh& skin, const Frame& frame) {
+std::optional<SeenNasion> nasionOf(const TriangleMesh& skin, const HeadExtent& extent) {
     constexpr double kFromBelow = 0.95, kToBelow = 0.45, kNoseBelow = 0.6, kAboveNoseMm = 70;
     constexpr double kStandsOutMm = 5;
     std::vector<Vec3> profile;  // upwards
-    for (double z = frame.topZ - kFromBelow * frame.lengthMm;
-         z <= frame.topZ - kToBelow * frame.lengthMm; z += 1) {
-        if (const auto point = profileAt(skin, frame, z)) profile.push_back(*point);
+    for (double z = extent.topZ - kFromBelow * extent.lengthMm;
+         z <= extent.topZ - kToBelow * extent.lengthMm; z += 1) {
+        if (const auto point = profileAt(skin, extent, z)) profile.push_back(*point);
     }
     const auto isFarther = [](const Vec3& a, const Vec3& b) { return a.y > b.y; };
     const auto noseEnd = std::find_if(profile.begin(), profile.end(), [&](const Vec3& p) {
-        return p.z > frame.topZ - kNoseBelow * frame.lengthMm;
+        return p.z > extent.topZ - kNoseBelow * extent.lengthMm;
     });
     if (noseEnd == profile.begin()) return std::nullopt;
     const auto nose = std::max_element(profile.begin(), noseEnd, isFarther);
@@ -73,9 +73,9 @@ std::optional<SeenNasion> nasionOf(const TriangleMesh& skin, const Frame& frame)
     return SeenNasion{*nasion, kSeenNasionMm};
 }
 
-std::optional<Vec3> earOf(const TriangleMesh& skin, const Frame& frame, double side) {
-    const Vec3 inside{frame.middleX, frame.frontY + kEarBehind * frame.lengthMm,
-                      frame.topZ - kEarBelow * frame.lengthMm};
+std::optional<Vec3> earOf(const TriangleMesh& skin, const HeadExtent& extent, double side) {
+    const Vec3 inside{extent.middleX, extent.frontY + kEarBehind * extent.lengthMm,
+                      extent.topZ - kEarBelow * extent.lengthMm};
     const Vec3 outward{side, 0, 0};
     const RayHits hits = rayHits(skin, inside, outward);
     if (hits.mm.empty()) return std::nullopt;
@@ -102,18 +102,18 @@ AffineTransform headAxes(const Landmarks& of) {
 }  // namespace
 
 GuessedLandmarks guessLandmarks(const TriangleMesh& innerSkull, const TriangleMesh& skin) {
-    const Frame frame = frameOf(innerSkull);
+    const HeadExtent extent = extentOf(innerSkull);
     const double lowest = boundingBox(skin).minimum.z;
     constexpr double kRoomMm = 5;
     GuessedLandmarks guess;
-    if (frame.topZ - kEarBelow * frame.lengthMm < lowest + kRoomMm) {
+    if (extent.topZ - kEarBelow * extent.lengthMm < lowest + kRoomMm) {
         guess.reason = "the head is cut above the ears; give nasion and ears";
         return guess;
     }
-    const auto left = earOf(skin, frame, 1), right = earOf(skin, frame, -1);
-    std::optional<SeenNasion> nasion = nasionOf(skin, frame);
+    const auto left = earOf(skin, extent, 1), right = earOf(skin, extent, -1);
+    std::optional<SeenNasion> nasion = nasionOf(skin, extent);
     if (!nasion) {
-        const auto point = profileAt(skin, frame, frame.topZ - kNasionBelow * frame.lengthMm);
+        const auto point = profileAt(skin, extent, extent.topZ - kNasionBelow * extent.lengthMm);
         if (point) nasion = SeenNasion{*point, kProportionMm};
     }
     if (!left || !right || !nasion) {

@@ -33,7 +33,7 @@ std::string rounded(Number value) {
     return text.str();
 }
 
-void checkOptions(const RemeshOptions& options) {
+void checkRemeshOptions(const RemeshOptions& options) {
     constexpr std::int64_t kMinVertices = 12;  // an icosahedron
     const bool isAdaptive = options.edgeLengthMm || !options.wantedEdgesMm.empty();
     if (options.vertices < kMinVertices && !(options.vertices == 0 && isAdaptive)) {
@@ -235,7 +235,7 @@ TriangleMesh finish(Remesher& remesher, std::int64_t vertices, double fitMm) {
 }  // namespace
 
 std::vector<double> wantedEdgesMm(const TriangleMesh& surface, const RemeshOptions& options) {
-    checkOptions(options);
+    checkRemeshOptions(options);
     checkSurface(surface);
     return adaptiveSizes(RemeshTarget(surface), *options.edgeLengthMm, options.neighbours);
 }
@@ -251,7 +251,7 @@ std::int64_t verticesForEdges(const TriangleMesh& surface, const std::vector<dou
 }
 
 Remeshed remeshForBem(const TriangleMesh& surface, const RemeshOptions& options) {
-    checkOptions(options);
+    checkRemeshOptions(options);
     checkSurface(surface);
     if (!options.wantedEdgesMm.empty() && options.wantedEdgesMm.size() != surface.points.size()) {
         throw InvalidInput("remeshForBem: " + std::to_string(options.wantedEdgesMm.size()) +

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "SixEquations.h"
 #include "adaptiso/Core/Parallel.h"
 
 namespace adaptiso {
 namespace {
 
-constexpr std::int64_t kGrain = 4096;
 constexpr int kNormalSmoothings = 4;  // takes the stairs out of the normals of a binary volume
 
 /// Weights of a, b, c that give p. \pre p lies on the triangle, as near as rounding lets it
@@ -27,28 +27,6 @@ std::array<Vec3, 2> tangents(const Vec3& n) {
     const Vec3 axis = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     const Vec3 u = normalized(cross(axis, n));
     return {u, cross(n, u)};
-}
-
-using Row = std::array<double, 7>;
-
-/// Solves the 6 x 6 system whose rows hold the right side last. \return false: singular
-bool solve(std::array<Row, 6>& m) {
-    for (int column = 0; column < 6; ++column) {
-        int pivot = column;
-        for (int row = column + 1; row < 6; ++row) {
-            if (std::abs(m[row][column]) > std::abs(m[pivot][column])) pivot = row;
-        }
-        // The unknowns are scaled to be of one size, so this is a relative bound.
-        if (!(std::abs(m[pivot][column]) > 1e-9)) return false;
-        std::swap(m[column], m[pivot]);
-        for (int row = 0; row < 6; ++row) {
-            if (row == column) continue;
-            const double factor = m[row][column] / m[column][column];
-            for (int k = column; k < 7; ++k) m[row][k] -= factor * m[column][k];
-        }
-    }
-    for (int row = 0; row < 6; ++row) m[row][6] /= m[row][row];
-    return true;
 }
 
 }  // namespace
@@ -74,6 +52,7 @@ RemeshTarget::RemeshTarget(const TriangleMesh& surface)
             normals_[v] += area2;
         }
     }
+    constexpr std::int64_t kGrain = 4096;
     const std::int64_t count = std::ssize(normals_);
     for (int round = 0; round < kNormalSmoothings; ++round) {
         std::vector<Vec3> smooth(normals_.size());
@@ -173,7 +152,7 @@ std::vector<VertexId> RemeshTarget::facingWithin(const Landing& at, double radiu
 LocalFit RemeshTarget::fit(const Landing& at, double radiusMm) const {
     const auto [u, v] = tangents(at.normal);
     const std::vector<VertexId> found = facingWithin(at, radiusMm);
-    std::array<Row, 6> normalEquations{};
+    SixEquations normalEquations{};
     double weights = 0;
     for (const VertexId w : found) {
         const Vec3 d = (1 / radiusMm) * (surface_.points[w] - at.pointMm);
@@ -189,14 +168,15 @@ LocalFit RemeshTarget::fit(const Landing& at, double radiusMm) const {
     }
     constexpr std::size_t kEnoughPoints = 12;  // twice the unknowns
     if (found.size() < kEnoughPoints || !(weights > 0)) return {};
-    for (Row& row : normalEquations) {
+    for (auto& row : normalEquations) {
         for (double& value : row) value /= weights;
     }
-    if (!solve(normalEquations)) return {};
-    const double xx = 2 * normalEquations[3][6], xy = normalEquations[4][6],
-                 yy = 2 * normalEquations[5][6];
+    constexpr double kLeastPivot = 1e-9;  // the unknowns are scaled to be of one size
+    const auto x = solved(normalEquations, kLeastPivot);
+    if (!x) return {};
+    const double xx = 2 * (*x)[3], xy = (*x)[4], yy = 2 * (*x)[5];
     const double mean = (xx + yy) / 2, spread = std::hypot((xx - yy) / 2, xy);
-    return {radiusMm * normalEquations[0][6], (std::abs(mean) + spread) / radiusMm, true};
+    return {radiusMm * (*x)[0], (std::abs(mean) + spread) / radiusMm, true};
 }
 
 }  // namespace adaptiso

@@ -19,7 +19,7 @@ constexpr double kCrestCos =
 constexpr double kCrestLoss = 0.15;  // of an edge length, that a crest may lose to a collapse
 constexpr double kMaxFoldCos = 0.5;  // edges sharper than 60 degrees are features: not flipped
 constexpr double kFitEdges = 0.75;   // radius of the local fit, edge lengths
-constexpr std::int64_t kGrain = 256;
+constexpr std::int64_t kSlotGrain = 256;
 
 double angleAt(const Vec3& apex, const Vec3& a, const Vec3& b) {
     return std::atan2(norm(areaVector2(apex, a, b)), dot(a - apex, b - apex));
@@ -281,7 +281,7 @@ void Remesher::relax(int rounds) {
     const std::int64_t slots = mesh_.vertexSlots();
     std::vector<Landing> landings(slots);
     for (int round = 0; round < rounds; ++round) {
-        parallelForPieces(slots, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        parallelForPieces(slots, kSlotGrain, [&](std::int64_t begin, std::int64_t end) {
             for (VertexId v = begin; v < end; ++v) {
                 if (mesh_.isVertexAlive(v) && !isOnCrest(v)) {
                     landings[v] = moved(v, relaxed(v));
@@ -355,7 +355,7 @@ std::int64_t Remesher::collapseShortest(std::int64_t count) {
 void Remesher::fitVertices(double limitMm) {
     const std::int64_t slots = mesh_.vertexSlots();
     std::vector<Landing> landings(slots);
-    parallelForPieces(slots, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(slots, kSlotGrain, [&](std::int64_t begin, std::int64_t end) {
         for (VertexId v = begin; v < end; ++v) {
             if (!mesh_.isVertexAlive(v)) continue;
             Landing& at = landings[v] = {mesh_.point(v), triangles_[v], normals_[v], sizesMm_[v]};

@@ -10,7 +10,7 @@
 namespace adaptiso {
 namespace {
 
-constexpr double kBeyondMm = 3, kStepMm = 0.1;
+constexpr double kBeyondMm = 3, kRayStepMm = 0.1;
 /// Less than this is no skull: what interpolation spreads beside it.
 constexpr double kLeastMm = 0.25;
 /// Part of the inner skull's height below which foramina and a base that was not segmented stay.
@@ -69,10 +69,11 @@ std::vector<Place> placesOf(const TriangleMesh& inner, const TriangleMesh& outer
             places[v].modelMm = norm(way);
             if (!(places[v].modelMm > 0)) continue;
             const Vec3 direction = 1 / places[v].modelMm * way;
-            const auto last = static_cast<std::int64_t>((places[v].modelMm + kBeyondMm) / kStepMm);
-            for (auto n = static_cast<std::int64_t>(-kBeyondMm / kStepMm); n <= last; ++n) {
-                const Vec3 at = start + kStepMm * static_cast<double>(n) * direction;
-                places[v].segmentedMm += kStepMm * skullAt(head, at);
+            const auto last =
+                static_cast<std::int64_t>((places[v].modelMm + kBeyondMm) / kRayStepMm);
+            for (auto n = static_cast<std::int64_t>(-kBeyondMm / kRayStepMm); n <= last; ++n) {
+                const Vec3 at = start + kRayStepMm * static_cast<double>(n) * direction;
+                places[v].segmentedMm += kRayStepMm * skullAt(head, at);
             }
         }
     });

@@ -16,7 +16,7 @@ using namespace headmodel;
 
 namespace {
 
-constexpr double kStepMm = 1;
+constexpr double kUsualStepMm = 1;
 constexpr double kCrackMm = 2;  ///< closing of what the vote leaves open
 
 /// Axes along x, y, z around all surfaces.
@@ -39,7 +39,7 @@ ImageGeometry gridAround(std::span<const TriangleMesh> surfaces, double step, do
 
 /// The inside of a surface that may have holes, crossings, stray pieces, turned triangles. What is
 /// no ball then has tunnels: those that `closingMm` closes are filled, before any are cut.
-Mask insideOf(const TriangleMesh& surface, const ImageGeometry& grid, double closingMm) {
+Mask enclosedBy(const TriangleMesh& surface, const ImageGeometry& grid, double closingMm) {
     const Mask inside = voxelized(surface, grid);
     const Mask whole =
         filled(closed(largestComponent(inside, grid.size), grid, kCrackMm), grid.size);
@@ -55,7 +55,7 @@ std::vector<float> headmodel::surfacePart(const TriangleMesh& surface, const Ima
     TriangleMesh outward = surface;
     outward.normals.clear();
     if (enclosedVolume(outward) < 0) flipOrientation(outward);
-    const Mask inside = insideOf(outward, grid, closingMm);
+    const Mask inside = enclosedBy(outward, grid, closingMm);
     if (voxelsIn(inside) == 0) {
         throw InvalidInput("a surface encloses nothing");
     }
@@ -95,7 +95,7 @@ HeadBoundaries boundariesFromSurfaces(std::span<const TriangleMesh> surfaces,
     }
     RawBoundaries raw;
     raw.grid =
-        gridAround(surfaces, options.stepMm > 0 ? options.stepMm : kStepMm, marginMm(options));
+        gridAround(surfaces, options.stepMm > 0 ? options.stepMm : kUsualStepMm, marginMm(options));
     for (const TriangleMesh& surface : surfaces) {
         tell(options, "mend", static_cast<double>(raw.parts.size()) / static_cast<double>(wanted));
         const bool isBrain = options.withBrain && &surface == surfaces.data();

@@ -16,9 +16,9 @@ struct Crossing {
 
 /// Where the triangles cross the rows of a grid along one axis. Rows are moved by an irrational
 /// part of a voxel, so that hits at edges and corners are none that happen.
-class Rows {
+class RowCrossings {
 public:
-    Rows(const TriangleMesh& mesh, const ImageGeometry& grid, int axis)
+    RowCrossings(const TriangleMesh& mesh, const ImageGeometry& grid, int axis)
         : axis_(axis), u_((axis + 1) % 3), v_((axis + 2) % 3), size_(grid.size) {
         rows_.resize(static_cast<std::size_t>(size_[u_] * size_[v_]));
         for (const Triangle& t : mesh.triangles) {
@@ -101,7 +101,7 @@ Mask voxelized(const TriangleMesh& surface, const ImageGeometry& grid) {
     Mask inside(static_cast<std::size_t>(grid.voxelCount()), 0), outside = inside;
     const bool isOriented = checkTopology(surface, {.maxExamplesPerDefect = 0}).isOriented();
     for (int axis = 0; axis < 3; ++axis)
-        Rows(surface, grid, axis).vote(isOriented, inside, outside);
+        RowCrossings(surface, grid, axis).vote(isOriented, inside, outside);
     for (std::size_t n = 0; n < inside.size(); ++n) inside[n] = inside[n] > outside[n] ? 1 : 0;
     return inside;
 }
