@@ -14,7 +14,7 @@
 namespace adaptiso {
 namespace {
 
-constexpr std::int64_t kPiece = 4096;
+constexpr std::int64_t kPlacePiece = 4096;
 
 using PointOf = std::function<std::optional<Vec3>(std::int64_t)>;
 using Take = std::function<void(std::int64_t, const ClosestPoint&)>;
@@ -23,11 +23,11 @@ using Take = std::function<void(std::int64_t, const ClosestPoint&)>;
 /// answered.
 std::vector<std::int64_t> searchTree(const AabbTree& tree, std::int64_t count,
                                      const PointOf& pointOf, const Take& take, bool areNear) {
-    constexpr std::int64_t kMost = 256 * kPiece;  // triangles to look at, for a piece
+    constexpr std::int64_t kMost = 256 * kPlacePiece;  // triangles to look at, for a piece
     constexpr std::int64_t kFirst = 64, kMostOfFirst = 4096 * kFirst;  // and for its first points
-    const std::int64_t pieces = (count + kPiece - 1) / kPiece;
+    const std::int64_t pieces = (count + kPlacePiece - 1) / kPlacePiece;
     std::vector<std::uint8_t> isHard(static_cast<std::size_t>(pieces));
-    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(count, kPlacePiece, [&](std::int64_t begin, std::int64_t end) {
         SearchEffort effort{kMost};
         std::int64_t hint = -1;
         for (std::int64_t n = begin; n < end; ++n) {
@@ -36,7 +36,7 @@ std::vector<std::int64_t> searchTree(const AabbTree& tree, std::int64_t count,
             const ClosestPoint nearest = tree.closestPoint(*point, hint, &effort);
             const bool isCostly = n < begin + kFirst && kMost - effort.triangles > kMostOfFirst;
             if (effort.isUsedUp() || isCostly) {
-                isHard[begin / kPiece] = 1;
+                isHard[begin / kPlacePiece] = 1;
                 return;
             }
             if (areNear) hint = nearest.triangle;
@@ -68,7 +68,7 @@ public:
     /// \return the first point that is not answered
     std::int64_t searchPiece(std::int64_t begin, std::int64_t end, bool endsAtOpen,
                              RoughDistances& rough) const {
-        constexpr std::int64_t kMost = 64 * kPiece, kOfEach = 128;  // where it is used up
+        constexpr std::int64_t kMost = 64 * kPlacePiece, kOfEach = 128;  // where it is used up
         SearchEffort effort{kMost};
         std::int64_t hint = -1;
         for (std::int64_t n = begin; n < end; ++n) {
@@ -155,7 +155,8 @@ RoughDistances findNearestPlaces(const TriangleMesh& mesh, const AabbTree& tree,
     std::vector<RoughDistances> rough(hard.size());
     std::vector<std::vector<std::int64_t>> openOf(hard.size());
     parallelForPieces(std::ssize(hard), 1, [&](std::int64_t h, std::int64_t) {
-        const std::int64_t begin = hard[h] * kPiece, end = std::min(count, begin + kPiece);
+        const std::int64_t begin = hard[h] * kPlacePiece,
+                           end = std::min(count, begin + kPlacePiece);
         for (std::int64_t n = search.searchPiece(begin, end, standIns != nullptr, rough[h]);
              n < end; ++n) {
             if (pointOf(n)) openOf[h].push_back(n);
@@ -166,7 +167,7 @@ RoughDistances findNearestPlaces(const TriangleMesh& mesh, const AabbTree& tree,
     const std::vector<std::int64_t> open = joined(openOf);
     if (open.empty()) return sum;
     constexpr std::int64_t kOfEach = 256;  // triangles to look at
-    const std::int64_t most = std::max(kOfEach * kPiece, search.triangleCount());
+    const std::int64_t most = std::max(kOfEach * kPlacePiece, search.triangleCount());
     const std::int64_t part = most / kOfEach, openCount = std::ssize(open);  // points of a part
     std::vector<std::vector<StandIn>> ofPart((openCount + part - 1) / part);
     parallelForPieces(openCount, part, [&](std::int64_t begin, std::int64_t end) {

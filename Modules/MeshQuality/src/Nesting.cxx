@@ -20,7 +20,7 @@
 namespace adaptiso {
 namespace {
 
-constexpr std::int64_t kGrain = 4096;
+constexpr std::int64_t kVertexGrain = 4096;
 constexpr std::int64_t kMostRayTests = 1 << 24, kLeastRayTests = 1 << 21;
 
 /// The mesh with each triangle once, where all of it is there twice and so has no inside by the
@@ -93,12 +93,12 @@ struct Meetings {
 
 /// By boxes. \return  empty where too many of these overlap
 std::optional<Meetings> findByBoxes(Surface& inner, Surface& outer, std::int64_t most) {
-    constexpr std::int64_t kMostTests = 256 * kGrain;  // of a piece
+    constexpr std::int64_t kMostTests = 256 * kVertexGrain;  // of a piece
     const std::int64_t count = std::ssize(inner.mesh.triangles);
-    std::vector<Meetings> ofPiece((count + kGrain - 1) / kGrain);
+    std::vector<Meetings> ofPiece((count + kVertexGrain - 1) / kVertexGrain);
     std::atomic<bool> areTooMany = false;
-    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-        Meetings& found = ofPiece[begin / kGrain];
+    parallelForPieces(count, kVertexGrain, [&](std::int64_t begin, std::int64_t end) {
+        Meetings& found = ofPiece[begin / kVertexGrain];
         std::int64_t tests = 0;
         for (std::int64_t n = begin; n < end && !areTooMany; ++n) {
             if (!inner.hasArea[n]) continue;
@@ -179,10 +179,10 @@ std::vector<VertexId> findSpokesmen(const Surface& surface, const Surface& other
 std::vector<std::optional<Side>> findSides(const Surface& surface, const Surface& other,
                                            const std::vector<VertexId>& spokesmen) {
     const std::int64_t count = std::ssize(spokesmen);
-    const std::int64_t most =  // for each kGrain vertices
-        std::max(kLeastRayTests, kMostRayTests / (count / kGrain + 1));
+    const std::int64_t most =  // for each kVertexGrain vertices
+        std::max(kLeastRayTests, kMostRayTests / (count / kVertexGrain + 1));
     std::vector<std::optional<Side>> sides(spokesmen.size());
-    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(count, kVertexGrain, [&](std::int64_t begin, std::int64_t end) {
         std::int64_t tests = 0;
         for (VertexId v = begin; v < end && tests <= most; ++v) {
             if (spokesmen[v] == v) sides[v] = other.inside.sideOf(surface.mesh.points[v], &tests);

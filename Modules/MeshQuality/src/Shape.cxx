@@ -7,20 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "Percentile.h"
 #include "Triangles.h"
 
 namespace adaptiso {
 
 namespace {
-
-/// Reorders `values`, which has at least one. The smallest value of rank `part`.
-double percentile(std::vector<double>& values, double part) {
-    const auto rank =
-        static_cast<std::ptrdiff_t>(std::ceil(part * static_cast<double>(values.size())));
-    const auto place = values.begin() + std::clamp<std::ptrdiff_t>(rank - 1, 0, values.size() - 1);
-    std::nth_element(values.begin(), place, values.end());
-    return *place;
-}
 
 /// Gathers values with the numbers of the triangles that they belong to.
 class SpreadMeter {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "NumberedTriangles.h"
+#include "Percentile.h"
 #include "TriangleGroups.h"
 #include "Triangles.h"
 #include "adaptiso/Core/AabbTree.h"
@@ -170,15 +171,6 @@ Measurements measure(const TriangleMesh& from, const TriangleMesh& to, std::int6
     const Farthest vertex = farthestVertex(from, to, tree, result);
     if (vertex.distanceMm > result.farthest.distanceMm) result.farthest = vertex;
     return result;
-}
-
-/// The nearest-rank percentile. Reorders `values`, which has at least one.
-double percentile(std::vector<double>& values, double part) {
-    const auto rank =
-        static_cast<std::ptrdiff_t>(std::ceil(part * static_cast<double>(values.size())));
-    const auto place = values.begin() + std::clamp<std::ptrdiff_t>(rank - 1, 0, values.size() - 1);
-    std::nth_element(values.begin(), place, values.end());
-    return *place;
 }
 
 double mean(const std::vector<double>& values) {

@@ -22,7 +22,6 @@ namespace adaptiso {
 namespace {
 
 constexpr double kMinAltitude = 1e-9;  // of the longest edge; checkTopology says why
-constexpr std::int64_t kGrain = 1 << 14;
 
 bool isInRange(const TriangleMesh& mesh, const Triangle& t) {
     const auto count = static_cast<VertexId>(mesh.points.size());
@@ -230,6 +229,7 @@ private:
 
 template <class Number>
 AllFacts inspectVertices(const TriangleMesh& mesh, const VertexTriangles<Number>& around) {
+    constexpr std::int64_t kGrain = 1 << 14;
     const std::int64_t count = std::ssize(mesh.points);
     AllFacts facts(count);
     std::vector<std::vector<std::pair<VertexId, VertexFacts>>> others((count + kGrain - 1) /

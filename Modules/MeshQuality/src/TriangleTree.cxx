@@ -10,8 +10,7 @@
 namespace adaptiso {
 namespace {
 
-constexpr std::int64_t kPiece = 1 << 13;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kInfiniteFloat = std::numeric_limits<float>::infinity();
 
 /// The largest numbers stand for those that are larger.
 float nearest(double x) {
@@ -20,11 +19,11 @@ float nearest(double x) {
 }
 float atMost(double x) {
     const float rounded = nearest(x);
-    return rounded > x ? std::nextafter(rounded, -kInfinity) : rounded;
+    return rounded > x ? std::nextafter(rounded, -kInfiniteFloat) : rounded;
 }
 float atLeast(double x) {
     const float rounded = nearest(x);
-    return rounded < x ? std::nextafter(rounded, kInfinity) : rounded;
+    return rounded < x ? std::nextafter(rounded, kInfiniteFloat) : rounded;
 }
 
 }  // namespace
@@ -78,6 +77,7 @@ void TriangleTree::build(const Subtree& subtree, const TriangleView& of) {
 
 TriangleTree::Pairs::Pairs(const TriangleTree& tree, const TriangleView& of) : tree_(tree) {
     assignInHugePages(leaves_, static_cast<std::size_t>(tree.leafCount()));
+    constexpr std::int64_t kPiece = 1 << 13;
     parallelForPieces(tree.leafCount(), kPiece / kLeafTriangles,
                       [&](std::int64_t begin, std::int64_t end) {
                           for (std::int64_t number = begin; number < end; ++number) {

@@ -21,10 +21,9 @@ namespace {
 constexpr std::uint32_t kNone = 0xFFFFFFFF, kLeftOut = kNone - 1;
 /// Relative to a piece's area to the power 1.5: a smaller volume may be rounding.
 constexpr double kFlatPiece = 1e-9;
-constexpr std::int64_t kGrain = 4096;
-/// Of a ray and a triangle for each kGrain triangles: thousands of pieces in each other.
+constexpr std::int64_t kTriangleGrain = 4096;
+/// Of a ray and a triangle for each kTriangleGrain triangles: thousands of pieces in each other.
 constexpr std::int64_t kMostTests = 1 << 24, kUnlimited = std::numeric_limits<std::int64_t>::max();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// For each start pieces, ascending.
 using PiecesAround = std::vector<std::vector<std::uint32_t>>;
@@ -33,7 +32,7 @@ using PiecesAround = std::vector<std::vector<std::uint32_t>>;
 /// number of times. Rays are found by the cells of a grid across them.
 /// \param pieceOf  of a triangle; kNone: it is not there
 /// \param matters  of a start and a piece: whether to look at it
-/// \param mostTests  of a ray and a triangle, for each kGrain triangles
+/// \param mostTests  of a ray and a triangle, for each kTriangleGrain triangles
 /// \return  empty where there would be more
 template <class CornersOf, class PieceOf, class Matters>
 std::optional<PiecesAround> piecesAround(const std::vector<Vec3>& starts,
@@ -59,9 +58,10 @@ std::optional<PiecesAround> piecesAround(const std::vector<Vec3>& starts,
         std::uint32_t ray, piece;
         auto operator<=>(const Passed&) const = default;
     };
-    std::vector<std::vector<Passed>> ofGrain((triangleCount + kGrain - 1) / kGrain);
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    std::vector<std::vector<Passed>> ofGrain((triangleCount + kTriangleGrain - 1) / kTriangleGrain);
     std::atomic<bool> areTooMany = false;
-    parallelForPieces(triangleCount, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(triangleCount, kTriangleGrain, [&](std::int64_t begin, std::int64_t end) {
         std::int64_t tests = 0;
         for (std::int64_t t = begin; t < end && !areTooMany; ++t) {
             const std::uint32_t piece = pieceOf(t);
@@ -83,7 +83,7 @@ std::optional<PiecesAround> piecesAround(const std::vector<Vec3>& starts,
                     if (!around.overlaps(boxOf(starts[ray], kRay)) || !matters(ray, piece))
                         continue;
                     if (!hitOf(starts[ray], kRay, corners).crosses) continue;
-                    ofGrain[begin / kGrain].push_back({ray, piece});
+                    ofGrain[begin / kTriangleGrain].push_back({ray, piece});
                 }
             }
         }
