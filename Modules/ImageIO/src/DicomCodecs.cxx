@@ -18,7 +18,7 @@ constexpr auto kJpegStart = "\xff\xd8\xff"sv;
 constexpr auto kJpeg2000Start = "\xff\x4f\xff\x51"sv;
 constexpr auto kJp2Start = "\0\0\0\x0cjP  "sv;
 
-[[noreturn]] void refuseDamaged(const fs::path& file, std::string_view what) {
+[[noreturn]] void refuseCompressed(const fs::path& file, std::string_view what) {
     refuse(file, fmt::format("{}: its pixel data can't be decoded", what), "get the file again");
 }
 
@@ -123,10 +123,10 @@ void decodeDicomRle(const fs::path& file, std::string_view stream, const DicomPi
                     std::vector<std::byte>& samples) {
     constexpr std::size_t kHeaderBytes = 64;
     constexpr const char* kDamaged = "its RLE segments are damaged";
-    if (stream.size() < kHeaderBytes) refuseDamaged(file, kDamaged);
+    if (stream.size() < kHeaderBytes) refuseCompressed(file, kDamaged);
     const HeaderBytes header(stream, std::endian::little);
     const std::size_t segments = bytesPerPixel(format.stored);
-    if (header.at<std::uint32_t>(0) != segments) refuseDamaged(file, kDamaged);
+    if (header.at<std::uint32_t>(0) != segments) refuseCompressed(file, kDamaged);
     const std::uint64_t count = format.frameBytes() / segments;
     samples.resize(format.frameBytes());
     for (std::size_t s = 0; s < segments; ++s) {
@@ -134,12 +134,12 @@ void decodeDicomRle(const fs::path& file, std::string_view stream, const DicomPi
         const std::uint64_t end =
             s + 1 < segments ? header.at<std::uint32_t>(8 + 4 * s) : stream.size();
         const bool isInside = begin >= kHeaderBytes && begin < end && end <= stream.size();
-        if (!isInside) refuseDamaged(file, kDamaged);
+        if (!isInside) refuseCompressed(file, kDamaged);
         // the most significant bytes come first; samples are little endian here
         const Segment segment =
             unpackRle(stream.substr(begin, end - begin), samples.data() + (segments - 1 - s), count,
                       segments, static_cast<std::uint64_t>(format.columns));
-        if (segment == Segment::Damaged) refuseDamaged(file, kDamaged);
+        if (segment == Segment::Damaged) refuseCompressed(file, kDamaged);
         if (segment == Segment::TooLong) {
             refuse(file,
                    fmt::format("its RLE data hold more pixels than its header describes ({} x {})",
@@ -157,7 +157,7 @@ void decodeDicomJpeg(const fs::path& file, std::string stream, DicomCodec codec,
     }
     const bool isJpeg = codec == DicomCodec::Jpeg && stream.starts_with(kJpegStart);
     const auto found = isJpeg ? findJpegHeader(stream) : findJpeg2000Header(stream);
-    if (!found) refuseDamaged(file, "its compressed pixel data are damaged");
+    if (!found) refuseCompressed(file, "its compressed pixel data are damaged");
     const std::size_t wordBytes = bytesPerPixel(format.stored);
     const bool agrees = found->columns == format.columns && found->rows == format.rows &&
                         found->components == 1 && found->precision >= 1 && found->precision <= 16 &&

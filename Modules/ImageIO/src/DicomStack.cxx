@@ -266,7 +266,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kRemedy = "get the series again, or give its slices of one kind";
+constexpr const char* kRemedyForMixed = "get the series again, or give its slices of one kind";
 
 /// Counts the slices for each answer.
 using Votes = std::map<std::string, std::size_t>;
@@ -346,17 +346,18 @@ void requireAgreement(const fs::path& input, const std::vector<DicomFile>& files
         refuse(input,
                fmt::format("mixes slices that store dark as low and as high values: {}",
                            listOf(photometric)),
-               kRemedy);
+               kRemedyForMixed);
     }
     const Votes types = count(
         planes, [](const DicomPlane& plane) -> std::string_view { return plane.rescaleType; });
     if (types.size() > 1) {
         refuse(input, fmt::format("its slices are rescaled to several units: {}", listOf(types)),
-               kRemedy);
+               kRemedyForMixed);
     }
     const Votes units = votesOf(tag::kUnits);
     if (units.size() > 1) {
-        refuse(input, fmt::format("its slices are of several units: {}", listOf(units)), kRemedy);
+        refuse(input, fmt::format("its slices are of several units: {}", listOf(units)),
+               kRemedyForMixed);
     }
     const auto silent = std::ranges::count(planes, false, &DicomPlane::hasRescale);
     if (silent > 0 && std::ranges::any_of(planes, isRescaled)) {
@@ -365,7 +366,7 @@ void requireAgreement(const fs::path& input, const std::vector<DicomFile>& files
             fmt::format("{} of its {} slices have no RescaleSlope and RescaleIntercept, the others "
                         "are rescaled by theirs",
                         silent, planes.size()),
-            kRemedy);
+            kRemedyForMixed);
     }
     const Votes signs = votesOf(tag::kPixelRepresentation);
     if (signs.size() > 1) {

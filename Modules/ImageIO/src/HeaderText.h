@@ -30,6 +30,9 @@ std::optional<std::int64_t> parseInteger(std::string_view text);
 template <class T>
 std::optional<T> parseNumberAs(std::string_view text);
 
+/// Bytes of the longest header that is read.
+constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
+
 /// The first bytes of a file, at most `most` of them.
 std::string readHead(const std::filesystem::path& file, std::size_t most);
 

@@ -21,8 +21,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
-
 struct MetaHeader {
     std::map<std::string, std::string, std::less<>> fields;
     std::uint64_t byteCount = 0;  ///< up to and with the ElementDataFile line
@@ -168,14 +166,14 @@ void parseScaling(const fs::path& file, const MetaHeader& header, SampleLayout& 
              number(layout.slope), number(layout.intercept))});
 }
 
-struct Extents {
+struct MetaExtents {
     std::size_t dimensions = 3;
     Index3 size{};
     std::int64_t volumeCount = 1;
 };
 
 /// 3 dimensions, or 4, the last of which counts volumes.
-Extents parseExtents(const fs::path& file, const MetaHeader& header) {
+MetaExtents parseExtents(const fs::path& file, const MetaHeader& header) {
     const auto dimensions = parseInteger(header.require(file, "NDims"));
     if (!dimensions || *dimensions < 1 || *dimensions > 10) {
         refuse(file, "its MetaImage header is damaged: NDims must be 1 to 10", "repair the header");
@@ -184,7 +182,7 @@ Extents parseExtents(const fs::path& file, const MetaHeader& header) {
         refuse(file, fmt::format("has {} dimensions, must have 3", *dimensions),
                "extract one volume first");
     }
-    Extents extents{static_cast<std::size_t>(*dimensions)};
+    MetaExtents extents{static_cast<std::size_t>(*dimensions)};
     const auto sizes = words(header.require(file, "DimSize"));
     if (sizes.size() != extents.dimensions) {
         refuse(file,
@@ -240,7 +238,7 @@ void requireNoSequence(const fs::path& file, const MetaHeader& header) {
 }
 
 /// Row a of TransformMatrix is the direction of axis a; LPS mm, as ITK writes it.
-ImageGeometry geometryOf(const fs::path& file, const MetaHeader& header, const Extents& extents,
+ImageGeometry geometryOf(const fs::path& file, const MetaHeader& header, const MetaExtents& extents,
                          std::vector<Warning>& warnings) {
     const std::size_t n = extents.dimensions;
     const std::string units = lowerCase(header.find({"DistanceUnits"}).value_or("mm"));
@@ -353,7 +351,7 @@ bool looksLikeMetaImage(std::string_view head) {
 ReadVolume readMetaImage(const fs::path& file, const ReadOptions& options) {
     const MetaHeader header = parseHeader(file);
     requireImage(file, header);
-    const Extents extents = parseExtents(file, header);
+    const MetaExtents extents = parseExtents(file, header);
     requireScalar(file, header);
     requireNoSequence(file, header);
     const std::string_view type = header.require(file, "ElementType");

@@ -22,9 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
-
-[[noreturn]] void refuseDamaged(const fs::path& file, std::string_view what) {
+[[noreturn]] void refuseHeader(const fs::path& file, std::string_view what) {
     refuse(file, fmt::format("its NRRD header is damaged: {}", what), "repair the header");
 }
 
@@ -112,8 +110,8 @@ std::vector<std::optional<Vec3>> parseVectors(const fs::path& file, std::string_
             inside = comma == std::string_view::npos ? "" : inside.substr(comma + 1);
         }
         if (!isGood) {
-            refuseDamaged(file,
-                          fmt::format("{} are not vectors of three numbers for each axis", field));
+            refuseHeader(file,
+                         fmt::format("{} are not vectors of three numbers for each axis", field));
         }
         vectors.emplace_back(vector);
         text.remove_prefix(close + 1);
@@ -174,7 +172,7 @@ std::array<AxisStep, 3> axisSteps(const fs::path& file, const NrrdHeader& header
     for (const auto& [count, name] :
          {std::pair{spacings.size(), "spacings"}, std::pair{units.size(), "units"}}) {
         if (count == 0 || count == axes.count()) continue;
-        refuseDamaged(file, fmt::format("{} {} for {} axes", count, name, axes.count()));
+        refuseHeader(file, fmt::format("{} {} for {} axes", count, name, axes.count()));
     }
     std::array<AxisStep, 3> steps;
     for (std::size_t axis = 0, spatial = 0; axis < axes.count(); ++axis) {
@@ -368,11 +366,11 @@ PixelType pixelTypeOf(const fs::path& file, const NrrdHeader& header) {
 NrrdAxes axesOf(const fs::path& file, const NrrdHeader& header) {
     const auto dimension = parseInteger(header.require(file, "dimension"));
     if (!dimension || *dimension < 1 || *dimension > 16) {
-        refuseDamaged(file, "dimension must be 1 to 16");
+        refuseHeader(file, "dimension must be 1 to 16");
     }
     const auto sizes = words(header.require(file, "sizes"));
     if (std::ssize(sizes) != *dimension) {
-        refuseDamaged(file, fmt::format("dimension {} but {} sizes", *dimension, sizes.size()));
+        refuseHeader(file, fmt::format("dimension {} but {} sizes", *dimension, sizes.size()));
     }
     if (*dimension != 3 && *dimension != 4) {
         refuse(file, fmt::format("has {} dimensions, must have 3", *dimension),
@@ -384,11 +382,10 @@ NrrdAxes axesOf(const fs::path& file, const NrrdHeader& header) {
     for (std::size_t axis = 0, spatial = 0; axis < sizes.size(); ++axis) {
         const auto extent = parseInteger(sizes[axis]);
         if (!extent) {
-            refuseDamaged(file,
-                          fmt::format("size '{}' is no whole number", printable(sizes[axis])));
+            refuseHeader(file, fmt::format("size '{}' is no whole number", printable(sizes[axis])));
         }
         if (axis == axes.volumeAxis) {
-            if (*extent < 1) refuseDamaged(file, "a size is below 1");
+            if (*extent < 1) refuseHeader(file, "a size is below 1");
             axes.volumeCount = *extent;
             continue;
         }
@@ -423,14 +420,14 @@ ImageGeometry geometryOf(const fs::path& file, const NrrdHeader& header, const N
     const auto directions =
         parseVectors(file, "space directions", header.require(file, "spacedirections"));
     if (directions.size() != axes.count()) {
-        refuseDamaged(
+        refuseHeader(
             file, fmt::format("{} space directions for {} axes", directions.size(), axes.count()));
     }
     ImageGeometry geometry{axes.size, {}, {}};
     for (std::size_t axis = 0, spatial = 0; axis < directions.size(); ++axis) {
         if (axis == axes.volumeAxis) continue;
         if (!directions[axis]) {
-            refuseDamaged(file, "space directions miss an axis, so its direction is unknown");
+            refuseHeader(file, "space directions miss an axis, so its direction is unknown");
         }
         geometry.indexToPhysical.column[spatial++] = scale * (toLps * *directions[axis]);
     }
@@ -443,7 +440,7 @@ ImageGeometry geometryOf(const fs::path& file, const NrrdHeader& header, const N
     }
     const auto origin = parseVectors(file, "space origin", *text);
     if (origin.size() != 1 || !origin.front()) {
-        refuseDamaged(file, "space origin is not one vector");
+        refuseHeader(file, "space origin is not one vector");
     }
     geometry.originMm = scale * (toLps * *origin.front());
     return geometry;

@@ -25,7 +25,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-[[noreturn]] void refuseDamaged(const fs::path& file, std::string_view codec) {
+[[noreturn]] void refuseChunk(const fs::path& file, std::string_view codec) {
     refuse(file, fmt::format("its {} data are damaged, or unpack to more than a chunk", codec),
            "get the dataset again");
 }
@@ -60,9 +60,9 @@ Bytes inflated(const Bytes& packed, std::uint64_t most, const fs::path& file) {
         taken += in - stream.avail_in;
         given += room - stream.avail_out;
         const bool isStuck = in == stream.avail_in && room == stream.avail_out;
-        if (state != Z_STREAM_END && (state != Z_OK || isStuck)) refuseDamaged(file, "deflate");
+        if (state != Z_STREAM_END && (state != Z_OK || isStuck)) refuseChunk(file, "deflate");
     }
-    if (taken != packed.size()) refuseDamaged(file, "deflate");
+    if (taken != packed.size()) refuseChunk(file, "deflate");
     out.resize(given);
     return out;
 }
@@ -71,7 +71,7 @@ Bytes inflated(const Bytes& packed, std::uint64_t most, const fs::path& file) {
 Bytes unzstd(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     Bytes out(static_cast<std::size_t>(most));
     const std::size_t size = ZSTD_decompress(out.data(), out.size(), packed.data(), packed.size());
-    if (ZSTD_isError(size) != 0) refuseDamaged(file, "zstd");
+    if (ZSTD_isError(size) != 0) refuseChunk(file, "zstd");
     out.resize(size);
     return out;
 }
@@ -80,10 +80,10 @@ Bytes unblosc(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     std::size_t size = 0;
     const bool isBlosc = packed.size() >= BLOSC_MIN_HEADER_LENGTH &&
                          blosc_cbuffer_validate(packed.data(), packed.size(), &size) == 0;
-    if (!isBlosc || size > most) refuseDamaged(file, "blosc");
+    if (!isBlosc || size > most) refuseChunk(file, "blosc");
     Bytes out(size);
     const int got = blosc_decompress_ctx(packed.data(), out.data(), out.size(), 1);
-    if (got < 0 || static_cast<std::size_t>(got) != size) refuseDamaged(file, "blosc");
+    if (got < 0 || static_cast<std::size_t>(got) != size) refuseChunk(file, "blosc");
     return out;
 }
 
@@ -91,14 +91,14 @@ Bytes unblosc(const Bytes& packed, std::uint64_t most, const fs::path& file) {
 Bytes unlz4(const Bytes& packed, std::uint64_t most, const fs::path& file) {
     constexpr std::size_t kHeader = 4;
     constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<int>::max());
-    if (packed.size() < kHeader || packed.size() > kMost) refuseDamaged(file, "lz4");
+    if (packed.size() < kHeader || packed.size() > kMost) refuseChunk(file, "lz4");
     const std::uint32_t size = firstWord(packed);
-    if (size > most || size > kMost) refuseDamaged(file, "lz4");
+    if (size > most || size > kMost) refuseChunk(file, "lz4");
     Bytes out(size);
     const int got = LZ4_decompress_safe(
         reinterpret_cast<const char*>(packed.data() + kHeader), reinterpret_cast<char*>(out.data()),
         static_cast<int>(packed.size() - kHeader), static_cast<int>(size));
-    if (got < 0 || static_cast<std::uint32_t>(got) != size) refuseDamaged(file, "lz4");
+    if (got < 0 || static_cast<std::uint32_t>(got) != size) refuseChunk(file, "lz4");
     return out;
 }
 
@@ -113,7 +113,7 @@ Bytes unlz4Stream(const Bytes& packed, std::uint64_t most, const fs::path& file)
     for (std::size_t at = 0;;) {
         if (packed.size() - at < kHeader ||
             std::memcmp(packed.data() + at, kMagic.data(), kMagic.size()) != 0) {
-            refuseDamaged(file, "lz4");
+            refuseChunk(file, "lz4");
         }
         const std::span<const std::byte> block = std::span(packed).subspan(at);
         const int method = std::to_integer<int>(block[kMagic.size()]) & kMethod;
@@ -123,7 +123,7 @@ Bytes unlz4Stream(const Bytes& packed, std::uint64_t most, const fs::path& file)
         if (size == 0 && length == 0 && at == packed.size()) return out;
         if (size == 0 || size > kMost || length > packed.size() - at || size > most - out.size() ||
             (method == kRaw ? length != size : method != kLz4)) {
-            refuseDamaged(file, "lz4");
+            refuseChunk(file, "lz4");
         }
         const std::size_t begin = out.size();
         out.resize(begin + size);
@@ -133,7 +133,7 @@ Bytes unlz4Stream(const Bytes& packed, std::uint64_t most, const fs::path& file)
             std::memcpy(to, from, size);
         } else if (LZ4_decompress_safe(from, to, static_cast<int>(length),
                                        static_cast<int>(size)) != static_cast<int>(size)) {
-            refuseDamaged(file, "lz4");
+            refuseChunk(file, "lz4");
         }
         at += length;
     }
