@@ -11,7 +11,7 @@
 namespace adaptiso::detail {
 namespace {
 
-using Corners = std::array<int, 8>;  ///< the label of each corner, or what stands for it
+using CornerLabels = std::array<int, 8>;  ///< the label of each corner, or what stands for it
 
 int tetrahedronWith(unsigned corners) {
     for (int t = 0; t < kTetrahedra; ++t) {
@@ -118,7 +118,7 @@ bool isDisc(const std::vector<unsigned>& border, unsigned corners) {
 }
 
 /// A cone over the walls on the border of the tetrahedra is what is inside them.
-bool isCone(const Corners& labels, Tetrahedra tetrahedra) {
+bool isCone(const CornerLabels& labels, Tetrahedra tetrahedra) {
     const std::vector<unsigned> border = borderOf(tetrahedra);
     for (int label = 0; label < 8; ++label) {
         unsigned corners = 0;
@@ -128,13 +128,13 @@ bool isCone(const Corners& labels, Tetrahedra tetrahedra) {
     return true;
 }
 
-bool isPinchedSide(const Corners& labels, int axis, int side) {
+bool isPinchedSide(const CornerLabels& labels, int axis, int side) {
     const std::array<int, 3> one = sideTriangle(axis, side, 0), other = sideTriangle(axis, side, 1);
     return isPinched(labels[one[0]], labels[one[1]], labels[one[2]], labels[other[1]]);
 }
 
 /// No group has both tetrahedra of a side that is pinched.
-bool keepsSidesApart(const Corners& labels, const std::array<int, kTetrahedra>& groupOf) {
+bool keepsSidesApart(const CornerLabels& labels, const std::array<int, kTetrahedra>& groupOf) {
     for (int axis = 0; axis < 3; ++axis) {
         for (int side = 0; side < 2; ++side) {
             const auto& [s, t] = kSideTetrahedra[axis][side];
@@ -146,14 +146,14 @@ bool keepsSidesApart(const Corners& labels, const std::array<int, kTetrahedra>& 
     return true;
 }
 
-bool isMixed(const Corners& labels, int t) {
+bool isMixed(const CornerLabels& labels, int t) {
     const int first = labels[0];
     return labels[7] != first || labels[kRing[t]] != first || labels[kRing[after(t)]] != first;
 }
 
 /// The groups that are left when the ring of tetrahedra is cut at inner faces: bit t cuts before
 /// tetrahedron t. \return no groups where that is not allowed
-CellPattern groupsOfCuts(const Corners& labels, unsigned cuts) {
+CellPattern groupsOfCuts(const CornerLabels& labels, unsigned cuts) {
     CellPattern pattern;
     pattern.groupOf.fill(CellPattern::kNone);
     std::array<int, kTetrahedra> groupOf;
@@ -184,7 +184,7 @@ CellPattern groupsOfCuts(const Corners& labels, unsigned cuts) {
     return pattern;
 }
 
-CellPattern findPattern(const Corners& labels) {
+CellPattern findPattern(const CornerLabels& labels) {
     std::array<int, kTetrahedra> whole{};
     if (std::all_of(labels.begin(), labels.end(), [&](int l) { return l == labels[0]; })) return {};
     if (isCone(labels, kAll) && keepsSidesApart(labels, whole)) {
@@ -205,7 +205,7 @@ CellPattern findPattern(const Corners& labels) {
 
 std::vector<CellPattern> findPatterns() {
     std::vector<CellPattern> patterns(kPatterns);
-    const auto fill = [&](const auto& self, Corners& labels, int c, int kinds) -> void {
+    const auto fill = [&](const auto& self, CornerLabels& labels, int c, int kinds) -> void {
         if (c == 8) {
             patterns[patternCode(labels)] = findPattern(labels);
             return;
@@ -215,7 +215,7 @@ std::vector<CellPattern> findPatterns() {
             self(self, labels, c + 1, std::max(kinds, kind + 1));
         }
     };
-    Corners labels{};
+    CornerLabels labels{};
     fill(fill, labels, 1, 1);
     return patterns;
 }

@@ -19,7 +19,7 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr std::int64_t kNoCell = -1;
-constexpr std::int64_t kPiece = 4096;
+constexpr std::int64_t kCellPiece = 4096;
 
 /// Bits of WallCell::points: the inner face before tetrahedron t; the triangles of the sides that
 /// the cell shares with the one before it along each axis.
@@ -206,9 +206,9 @@ void forEachFace(const LabelGrid& grid, const std::vector<WallCell>& cells, std:
 /// Marks the faces that need a point, and lists what groups share.
 void findFaces(const LabelGrid& grid, const CellFinder& finder, DualComplex& complex) {
     const auto count = static_cast<std::int64_t>(complex.cells.size());
-    std::vector<std::vector<Adjacency>> found((count + kPiece - 1) / kPiece);
-    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        std::vector<Adjacency>& own = found[begin / kPiece];
+    std::vector<std::vector<Adjacency>> found((count + kCellPiece - 1) / kCellPiece);
+    parallelForPieces(count, kCellPiece, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<Adjacency>& own = found[begin / kCellPiece];
         for (std::int64_t c = begin; c < end; ++c) {
             unsigned points = 0;
             forEachFace(grid, complex.cells, c, finder.before(c), [&](const SharedFace& face) {
@@ -267,19 +267,19 @@ Passage passageBetween(const Around& from, const Around& into) {
 }
 
 /// The corners of the polygon of a lattice edge of a cell.
-struct Corners {
+struct EdgeCorners {
     std::array<VertexId, 12> vertices;
     int count = 0;
     bool isWhole = true;
 
     void push(VertexId v) { vertices[count++] = v; }
 };
-Corners cornersOfEdge(const std::vector<WallCell>& cells, const std::array<std::int64_t, 8>& before,
-                      int kind) {
+EdgeCorners cornersOfEdge(const std::vector<WallCell>& cells,
+                          const std::array<std::int64_t, 8>& before, int kind) {
     const EdgeRing& ring = edgeRing(kind);
     std::array<Around, 6> around;
     std::array<VertexId, 6> vertex;
-    Corners corners;
+    EdgeCorners corners;
     for (int n = 0; n < ring.count; ++n) {
         const auto& [at, t] = ring.around[n];
         around[n] = {-(at[0] + 2 * at[1] + 4 * at[2]), t};
@@ -314,16 +314,16 @@ void addPolygons(const LabelGrid& grid, DualComplex& complex) {
         std::vector<DualComplex::Polygon> polygons;
         std::vector<DualId> corners;
     };
-    std::vector<Piece> pieces((count + kPiece - 1) / kPiece);
-    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        Piece& piece = pieces[begin / kPiece];
+    std::vector<Piece> pieces((count + kCellPiece - 1) / kCellPiece);
+    parallelForPieces(count, kCellPiece, [&](std::int64_t begin, std::int64_t end) {
+        Piece& piece = pieces[begin / kCellPiece];
         for (std::int64_t c = begin; c < end; ++c) {
             const std::int64_t place = complex.cells[c].place;
             const std::array<Label, 8> labels = grid.cornersOf(place);
             const auto before = finder.before(c);
             for (int kind = 1; kind <= kEdgeKinds; ++kind) {
                 if (labels[0] == labels[kind]) continue;
-                const Corners corners = cornersOfEdge(complex.cells, before, kind);
+                const EdgeCorners corners = cornersOfEdge(complex.cells, before, kind);
                 if (corners.count < 3) continue;
                 piece.polygons.push_back({place,
                                           {labels[0], labels[kind]},

@@ -14,7 +14,7 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr std::int64_t kPiece = 4096;
+constexpr std::int64_t kGrain = 4096;
 
 Vec3 offsetOf(int corner) {
     return {static_cast<double>(corner & 1), static_cast<double>(corner >> 1 & 1),
@@ -152,7 +152,7 @@ public:
 private:
     template <class F>
     void forEach(const F& f) const {
-        parallelForPieces(std::ssize(points_), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        parallelForPieces(std::ssize(points_), kGrain, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t v = begin; v < end; ++v) f(v);
         });
     }
@@ -204,7 +204,7 @@ template <class F>
 void forEachStart(const LabelGrid& grid, const DualComplex& complex, const std::vector<Room>& rooms,
                   const F& f) {
     const auto count = static_cast<std::int64_t>(complex.cells.size());
-    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t c = begin; c < end; ++c) {
             const WallCell& cell = complex.cells[c];
             const std::array<Label, 8> labels = grid.cornersOf(cell.place);
@@ -339,7 +339,7 @@ void takeBackShift(const LabelGrid& grid, const DualComplex& complex,
         shift[v] = static_cast<float>(dot(points[v] - start, pointOf(normals[v])));
     });
     for (int step = 0; step < kSteps; ++step) {
-        parallelForPieces(complex.groupCount, kPiece, [&](std::int64_t begin, std::int64_t end) {
+        parallelForPieces(complex.groupCount, kGrain, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t v = begin; v < end; ++v) {
                 if (!hasNormal(v)) continue;
                 float sum = shift[v], count = 1;

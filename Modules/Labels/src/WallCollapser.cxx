@@ -13,8 +13,6 @@ namespace adaptiso::detail {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Squared distance from the planes, in the mean, of the squared limit, above which a collapse is
 /// not tried. At 1 there are 2.5 % fewer triangles for a seventh more time (aal).
 constexpr double kMostMean2 = 0.5;
@@ -477,14 +475,15 @@ struct HalfSpace {
     double least;
 };
 
-struct Room {
+/// What lies in all of them.
+struct HalfSpaces {
     std::array<HalfSpace, 4> sides;
     int count = 0;
 };
 
 /// The tetrahedron, wider by the margin; of a flat one, a slab round it.
-Room roomOf(const std::array<Vec3, 4>& p) {
-    Room room;
+HalfSpaces widened(const std::array<Vec3, 4>& p) {
+    HalfSpaces around;
     for (int i = 0; i < 4; ++i) {
         const Vec3 &a = p[(i + 1) % 4], &b = p[(i + 2) % 4], &c = p[(i + 3) % 4];
         Vec3 normal = areaVector2(a, b, c);
@@ -497,14 +496,14 @@ Room roomOf(const std::array<Vec3, 4>& p) {
         if (height < margin || margin == 0) {
             const double at = dot(normal, a);
             if (margin == 0) return {};
-            room.sides[0] = {normal, at - 2 * margin};
-            room.sides[1] = {-normal, -at - 2 * margin};
-            room.count = 2;
-            return room;
+            around.sides[0] = {normal, at - 2 * margin};
+            around.sides[1] = {-normal, -at - 2 * margin};
+            around.count = 2;
+            return around;
         }
-        room.sides[room.count++] = {normal, dot(normal, a) - margin};
+        around.sides[around.count++] = {normal, dot(normal, a) - margin};
     }
-    return room;
+    return around;
 }
 
 /// std::ceil and std::floor of what 64 bits hold, without a call.
@@ -527,8 +526,8 @@ bool SweptCentres::isCentreIn(const std::array<Vec3, 4>& p) {
         high[axis] = roundedDown(std::max(std::max(x, y), std::max(z, w)) + kMargin);
         if (low[axis] > high[axis]) return false;
     }
-    const Room room = roomOf(p);
-    // lines of centres along the axis that the triangle faces most: few lie in a flat room
+    const HalfSpaces around = widened(p);
+    // lines of centres along the axis that the triangle faces most: few lie in a flat one
     const Vec3 facing = areaVector2(p[0], p[1], p[2]);
     int along = 0;
     for (int axis = 1; axis < 3; ++axis) {
@@ -536,8 +535,8 @@ bool SweptCentres::isCentreIn(const std::array<Vec3, 4>& p) {
     }
     const int u = (along + 1) % 3, v = (along + 2) % 3;
     std::array<double, 4> perSlope{};  // 0: the line runs along the side
-    for (int i = 0; i < room.count; ++i) {
-        const Vec3& normal = room.sides[i].normal;
+    for (int i = 0; i < around.count; ++i) {
+        const Vec3& normal = around.sides[i].normal;
         const double slope = normal[along];
         if (slope * slope >= kParallel * kParallel * squaredNorm(normal)) perSlope[i] = 1 / slope;
     }
@@ -545,8 +544,8 @@ bool SweptCentres::isCentreIn(const std::array<Vec3, 4>& p) {
     for (at[u] = low[u]; at[u] <= high[u]; ++at[u]) {
         for (at[v] = low[v]; at[v] <= high[v]; ++at[v]) {
             double first = low[along], last = high[along];
-            for (int i = 0; i < room.count; ++i) {
-                const auto& [normal, least] = room.sides[i];
+            for (int i = 0; i < around.count; ++i) {
+                const auto& [normal, least] = around.sides[i];
                 const double lack = least - dot(normal, at);
                 if (perSlope[i] == 0) {
                     if (lack > 0) last = first - 1;

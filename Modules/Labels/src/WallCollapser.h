@@ -87,8 +87,9 @@ public:
     Id fullNear(Id triangle) const;
 
 private:
+    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
     struct Plan {
-        double cost = std::numeric_limits<double>::infinity();
+        double cost = kInfinity;
         Vec3 point;
         Kind kind = Kind::Wall;
     };

@@ -2,7 +2,6 @@
 // whether what is made lies near the full walls.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "WallCollapser.h"
 #include "adaptiso/Core/AabbTree.h"
@@ -10,8 +9,6 @@
 
 namespace adaptiso::detail {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Edges longer than this are looked at in three places, else in the middle alone.
 constexpr double kLongVoxels = 1.5, kAside = 0.25;

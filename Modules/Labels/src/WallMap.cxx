@@ -9,8 +9,6 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr std::int64_t kPiece = 1024;
-
 auto orderOf(const Vec3& p) {
     return std::tuple(p.x, p.y, p.z);
 }
@@ -250,6 +248,7 @@ WallMap::Result WallMap::map(const std::vector<Id>& full, bool areAll, double li
         }
         return false;
     };
+    constexpr std::int64_t kPiece = 1024;
     const auto count = static_cast<std::int64_t>(full.size());
     std::vector<Result> pieces((count + kPiece - 1) / kPiece);
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {

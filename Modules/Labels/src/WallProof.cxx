@@ -13,8 +13,6 @@ namespace adaptiso::detail {
 
 namespace {
 
-constexpr std::int64_t kPiece = 256;
-
 /// Most triangles that a walk may visit: some, and more for large triangles.
 constexpr int kLeastSteps = 60;
 constexpr double kStepsPerTriangle = 12, kMostSteps = 1e5;
@@ -152,6 +150,7 @@ double meanArea2Of(const WallSurface& surface) {
 WallBound proveNear(const WallMesh& mesh, const std::vector<WallMesh::Id>& triangles,
                     const std::vector<WallMesh::Id>& starts, const WallSurface& to, double limitMm,
                     bool mayGrow, bool hasWitnesses) {
+    constexpr std::int64_t kPiece = 256;
     const auto count = static_cast<std::int64_t>(triangles.size());
     const double meanArea2 = meanArea2Of(to);
     std::vector<WallBound> bounds((count + kPiece - 1) / kPiece);

@@ -18,8 +18,6 @@
 
 namespace adaptiso::detail {
 
-namespace {
-
 /// Numbers things from 0 on in the order in which they come. Memory goes with how many there are,
 /// not with how large their own numbers are.
 class IdNumbers {
@@ -58,9 +56,10 @@ private:
     std::vector<Id> table_;  ///< a power of two of places
 };
 
+namespace {
+
 using Id = std::uint32_t;
 constexpr Id kNone = IdNumbers::kNone;
-constexpr std::int64_t kPiece = 8192;
 
 /// Collapses edges, cheapest first, until one limit of cost after the other is used up.
 void collapseAll(WallCollapser& collapser, double limitMm, std::int64_t enough) {
@@ -222,6 +221,7 @@ WholeWalls::Lists WholeWalls::listsOf(const CubeCut& cut, const WallAim& aim) co
     const std::vector<WallTriangle>& all = triangles();
     const auto cubes = static_cast<std::size_t>(cut.count());
     lists.cubeOf.resize(at.size());
+    constexpr std::int64_t kPiece = 8192;
     const auto count = [](const auto& of) { return static_cast<std::int64_t>(of.size()); };
     parallelForPieces(count(at), kPiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t v = begin; v < end; ++v) {
