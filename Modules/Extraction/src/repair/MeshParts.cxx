@@ -23,7 +23,7 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr std::int64_t kPiece = 1 << 12;
+constexpr std::int64_t kPartPiece = 1 << 12;
 /// Below, a mesh fits a processor's cache in any order.
 constexpr double kManyTriangles = 1 << 15;
 /// As a fraction of the points: mean distance of an edge's ends in the list.
@@ -263,7 +263,7 @@ private:
     /// Calls f(i) for all numbers below a count, side by side.
     template <class F>
     static void forEach(std::size_t count, const F& f) {
-        parallelForPieces(static_cast<std::int64_t>(count), kPiece,
+        parallelForPieces(static_cast<std::int64_t>(count), kPartPiece,
                           [&](std::int64_t begin, std::int64_t end) {
                               for (std::int64_t i = begin; i < end; ++i) f(i);
                           });
@@ -329,7 +329,7 @@ private:
     void cutPoints() {
         const auto count = static_cast<std::int64_t>(parts_.points.size());
         std::vector<std::uint8_t> isSingular(parts_.points.size(), 0);
-        parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
+        parallelForPieces(count, kPartPiece, [&](std::int64_t begin, std::int64_t end) {
             for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
                 const auto leaving = halfEdges_.from(v);
                 bool isWhole = fanSize(leaving.front()) == leaving.size();

@@ -37,11 +37,11 @@ public:
     }
     /// In the tile: beyond its walls the samples may not be there.
     Vec3 normalAt(const Vec3& index) const override {
-        constexpr double kWithin = 1e-9;
+        constexpr double kInside = 1e-9;
         Vec3 place;
         for (int a = 0; a < 3; ++a) {
             place[a] = std::clamp(index[a] + static_cast<double>(shift_[a]), tile_.minimum[a],
-                                  tile_.maximum[a] - kWithin);
+                                  tile_.maximum[a] - kInside);
         }
         return whole_.normalAt(place);
     }

@@ -23,14 +23,14 @@ bool isBefore(const Corners& a, const Corners& b) {
         });
 }
 
-constexpr std::int64_t kPiece = 1 << 12;
+constexpr std::int64_t kSamplePiece = 1 << 12;
 
 /// The side of a voxel of the volume that such triangles would come from: marching cubes makes
 /// about three triangles for each voxel's face that the surface covers.
 double voxelOf(const MeshParts& parts, std::optional<double> boundMm) {
     std::vector<double> areas;
     assignInHugePages(areas, parts.triangles.size());
-    parallelForPieces(std::ssize(areas), kPiece, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(std::ssize(areas), kSamplePiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
             const Corners c = parts.view().cornersOf(t);
             areas[t] = 0.5 * norm(areaVector2(c[0], c[1], c[2]));
@@ -141,7 +141,7 @@ SimplifiedSurface MeshSurface::unchanged(bool keepsHeirs) const {
 /// \param areas  the sums of area vectors around each point \return of each triangle
 std::vector<std::uint8_t> MeshSurface::bentTriangles(const std::vector<Vec3>& areas) const {
     std::vector<std::uint8_t> isBent(parts_.triangles.size());
-    parallelForPieces(std::ssize(isBent), kPiece, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(std::ssize(isBent), kSamplePiece, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
             const MeshParts::Triangle& v = parts_.triangles[t];
             isBent[t] =
@@ -165,7 +165,7 @@ void MeshSurface::addSamples(const std::vector<Vec3>& areas, SimplifiedSurface& 
     surface.samples.resize(parts_.points.size());
     surface.sampleTriangle.resize(parts_.points.size());
     parallelForPieces(
-        std::ssize(surface.samples), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        std::ssize(surface.samples), kSamplePiece, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t v = begin; v < end; ++v) {
                 surface.samples[v] = Sample::at(parts_.points[v], areas[v], clearances[v]);
             }

@@ -17,7 +17,7 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr std::int64_t kPiece = 1 << 14;
+constexpr std::int64_t kGrain = 1 << 14;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ SimplifiedSurface VolumeSurface::firstRound(const PatchLimits& limits, CollapseC
         simplifyBricks(sampler_, bricks_, frame(), limits, costs, moving_ ? &*moving_ : nullptr);
     if (bricks_.grid().border == Border::Open) {
         std::vector<std::uint8_t> faces(surface.points.size());
-        parallelForPieces(std::ssize(faces), kPiece, [&](std::int64_t begin, std::int64_t end) {
+        parallelForPieces(std::ssize(faces), kGrain, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t v = begin; v < end; ++v) faces[v] = facesAt(surface.points[v]);
         });
         markBorders(openHalfEdges(surface, faces), surface);
@@ -65,7 +65,7 @@ TriangleMesh VolumeSurface::meshOf(const SimplifiedSurface& surface) const {
     TriangleMesh mesh;
     assignInHugePages(mesh.points, surface.points.size());
     assignInHugePages(mesh.normals, surface.points.size());
-    parallelForPieces(std::ssize(mesh.points), kPiece, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(std::ssize(mesh.points), kGrain, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t v = begin; v < end; ++v) {
             const Vec3 index = frame().toIndex(surface.points[v]);
             mesh.points[v] = geometry_.toPhysical(index);
@@ -105,7 +105,7 @@ std::vector<std::uint64_t> VolumeSurface::cellsOf(const SimplifiedSurface& surfa
     if (!(static_cast<double>(fine) > fewest) || !roundsFinely()) return {};
     std::vector<std::uint64_t> cells(surface.triangles.size(), kNoCell);
     const Index3 count{geometry_.size[0] + 1, geometry_.size[1] + 1, geometry_.size[2] + 1};
-    parallelForPieces(std::ssize(cells), kPiece, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(std::ssize(cells), kGrain, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
             if (isFine[t] == 0) continue;
             const auto& [a, b, c] = surface.triangles[t];

@@ -15,8 +15,6 @@ namespace {
 
 using Number = SurfaceState::Number;
 
-constexpr std::int64_t kPiece = 1 << 14;
-
 std::array<double, 3> barycentric(const Vec3& p, const Corners& t) {
     const Vec3 area2 = areaVector2(t[0], t[1], t[2]);
     const double whole = squaredNorm(area2);
@@ -34,6 +32,7 @@ double squaredDistanceToNearest(const Vec3& p, const std::vector<Corners>& trian
 /// The numbers below `count` of which isMeant(number) is true, ascending.
 template <class IsMeant>
 std::vector<Number> numbersWhere(std::size_t count, const IsMeant& isMeant) {
+    constexpr std::int64_t kPiece = 1 << 14;
     const auto end = static_cast<std::int64_t>(count);
     std::vector<std::vector<Number>> found((end + kPiece - 1) / kPiece);
     parallelForPieces(end, kPiece, [&](std::int64_t first, std::int64_t last) {

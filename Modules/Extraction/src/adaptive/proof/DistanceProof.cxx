@@ -18,7 +18,7 @@ namespace {
 
 using Number = SurfaceState::Number;
 
-constexpr std::int64_t kPiece = 256, kFinePiece = 2048;
+constexpr std::int64_t kSimplifiedPiece = 256, kFinePiece = 2048;
 
 /// Bounds proved for some triangles.
 struct PartBound {
@@ -340,7 +340,7 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& s
     const std::vector<std::uint32_t> starts = startsOf(surface, task);
     const std::int64_t fineCount = std::ssize(fineView_.triangles), count = surface.triangleCount(),
                        finePieces = (fineCount + kFinePiece - 1) / kFinePiece,
-                       pieces = (count + kPiece - 1) / kPiece;
+                       pieces = (count + kSimplifiedPiece - 1) / kSimplifiedPiece;
     std::vector<PartBound> results(finePieces + pieces);
     FineFound found{std::vector<std::uint8_t>(fineCount), std::vector<std::uint8_t>(count),
                     SharedCover(count)};
@@ -361,8 +361,8 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& s
                     [](const PartBound& result) { return result.hasSearched; })) {
         fineTree_.get();
     }
-    parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {
-        results[finePieces + begin / kPiece] =
+    parallelForPieces(count, kSimplifiedPiece, [&](std::int64_t begin, std::int64_t end) {
+        results[finePieces + begin / kSimplifiedPiece] =
             proveSimplified(task, scope.isKnown, starts, begin, end, found);
     });
     ErrorBound bound;

@@ -11,7 +11,6 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr std::int64_t kPiece = 1 << 14;
 /// Cubes in the bounding box at most.
 constexpr double kMostCubes = 1 << 20;
 

@@ -96,6 +96,7 @@ public:
 
 private:
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+    static constexpr std::int64_t kPiece = 1 << 14;        ///< vertices or triangles
     using Groups = Buckets<std::uint32_t, std::uint32_t>;  ///< of members' numbers
 
     std::vector<std::uint32_t> cubesOfVertices() const;
