@@ -19,15 +19,16 @@ struct Count {
 };
 using Counts = std::unordered_map<Label, Count>;
 
-constexpr Label kMost = std::numeric_limits<Label>::max();
+constexpr Label kLargestLabel = std::numeric_limits<Label>::max();
 
 template <class T>
 bool isLabel(T value) {
     if constexpr (std::is_floating_point_v<T>) {
-        constexpr T kEnd = T(2147483648);  // kMost is no float
+        constexpr T kEnd = T(2147483648);  // kLargestLabel is no float
         return value == std::floor(value) && std::abs(value) < kEnd;
     } else {
-        return std::cmp_less_equal(value, kMost) && std::cmp_greater_equal(value, -kMost);
+        return std::cmp_less_equal(value, kLargestLabel) &&
+               std::cmp_greater_equal(value, -kLargestLabel);
     }
 }
 

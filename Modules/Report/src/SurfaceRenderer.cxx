@@ -252,7 +252,7 @@ Rendering render(std::span<const SceneSurface> surfaces, std::span<const VertexN
 
 namespace {
 
-constexpr int kSize = 330, kGap = 6, kLabel = 24, kHead = 36, kBarRoom = 110;
+constexpr int kViewSize = 330, kViewGap = 6, kViewLabel = 24, kViewHead = 36, kBarRoom = 110;
 
 std::string fixed(double value) {
     char text[32];
@@ -262,7 +262,7 @@ std::string fixed(double value) {
 
 void drawColorBar(Canvas& canvas, double left, double largestMm) {
     constexpr int kSteps = 256;
-    const double top = kHead + 40, height = 2.0 * kSize - 60;
+    const double top = kViewHead + 40, height = 2.0 * kViewSize - 60;
     for (int n = 0; n < kSteps; ++n) {
         canvas.rectangle({left, top + height * (kSteps - 1 - n) / kSteps}, 20,
                          height / kSteps + 0.5, viridis(n / double(kSteps - 1)));
@@ -289,29 +289,29 @@ void drawSixSides(Canvas& canvas, const Scene& scene, std::span<const SceneSurfa
     });
     std::array<Rendering, 6> renderings;
     parallelForPieces(6, 1, [&](std::int64_t begin, std::int64_t) {
-        renderings[begin] = render(surfaces, normals, box, sixViews()[begin], kSize);
+        renderings[begin] = render(surfaces, normals, box, sixViews()[begin], kViewSize);
     });
     const double toleranceMm = 0.02 * norm(box.size());
     for (int side = 0; side < 6; ++side) {
         const View& view = sixViews()[side];
         const Rendering& rendering = renderings[side];
-        const int left = kGap + side % 3 * (kSize + kGap);
-        const int top = kHead + side / 3 * (kSize + kLabel + kGap);
-        canvas.image(left, top, kSize, kSize, rendering.colors);
+        const int left = kViewGap + side % 3 * (kViewSize + kViewGap);
+        const int top = kViewHead + side / 3 * (kViewSize + kViewLabel + kViewGap);
+        canvas.image(left, top, kViewSize, kViewSize, rendering.colors);
         for (const SceneSpot& spot : scene.spots) {
             if (!spot.isFailure || !rendering.isSeen(spot.pointMm, view, toleranceMm)) continue;
             const Pixel at = rendering.toPixel(spot.pointMm, view);
             canvas.ring({left + at.x, top + at.y}, 9, kAlarm, 2.5);
         }
-        const double base = top + kSize + 16.0;
-        canvas.text({left + kSize / 2.0, base}, view.name, 14, kInk, Anchor::Middle);
+        const double base = top + kViewSize + 16.0;
+        canvas.text({left + kViewSize / 2.0, base}, view.name, 14, kInk, Anchor::Middle);
         canvas.text({left + 30.0, base}, view.leftSide, 14, kFaint);
-        canvas.text({left + kSize - 30.0, base}, view.rightSide, 14, kFaint, Anchor::Right);
+        canvas.text({left + kViewSize - 30.0, base}, view.rightSide, 14, kFaint, Anchor::Right);
     }
 }
 
-constexpr int kSixWidth = 3 * (kSize + kGap) + kGap;
-constexpr int kSixHeight = kHead + 2 * (kSize + kLabel + kGap);
+constexpr int kSixWidth = 3 * (kViewSize + kViewGap) + kViewGap;
+constexpr int kSixHeight = kViewHead + 2 * (kViewSize + kViewLabel + kViewGap);
 
 }  // namespace
 
@@ -323,7 +323,7 @@ Picture sixSidesPicture(const Scene& scene, std::size_t n) {
     canvas.text({40, 26}, surface.name, 16, kInk, Anchor::Left, true);
     drawSixSides(canvas, scene, {&surface, 1}, boxOf(surface, scene.box));
     if (hasBar) {
-        drawColorBar(canvas, kSixWidth - kGap + 12, surface.largestValueMm);
+        drawColorBar(canvas, kSixWidth - kViewGap + 12, surface.largestValueMm);
         canvas.text({canvas.width() - 10.0, 26}, "colours: mm " + surface.valuesAre, 14, kInk,
                     Anchor::Right);
     }
