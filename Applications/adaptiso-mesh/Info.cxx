@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <ostream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,11 +19,8 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/PreprocessingOptions.h"
-#include "Common/Progress.h"
-#include "Common/ReportOutput.h"
+#include "Common/ProgramRun.h"
 #include "Common/RunApp.h"
-#include "Common/Verdict.h"
-#include "Common/Warnings.h"
 #include "InfoPage.h"
 #include "Run.h"
 #include "adaptiso/Core/Phrases.h"
@@ -400,55 +398,39 @@ std::string infoJson(const MeshOptions& options, const ImageInfo& info, const Ve
     return jsonText(report) + "\n";
 }
 
-ReportResult writePage(const MeshOptions& options, const ImageInfo& info,
-                       const std::vector<Warning>& warnings, std::vector<AtomicOutput>& outputs) {
-    if (!options.report.isWanted()) return {};
-    const auto make = [&] {
-        if (!info.values.histogram) throw InvalidInput("its values leave no isovalue to choose");
-        Report report = infoReport(baseName(options.input), info.format, info.volume->view(),
-                                   info.values, [&](const std::string& words) {
-                                       return commandWith(options, words, baseName(options.input));
-                                   });
-        report.warnings = linesOf(warnings);
-        tellStrict(report, options.common, warnings, "");
-        return report;
-    };
-    return writeReport(make, "adaptiso-mesh", options.report, outputs);
+Report makePage(const MeshOptions& options, const ImageInfo& info) {
+    if (!info.values.histogram) throw InvalidInput("its values leave no isovalue to choose");
+    return infoReport(baseName(options.input), info.format, info.volume->view(), info.values,
+                      [&](const std::string& words) {
+                          return commandWith(options, words, baseName(options.input));
+                      });
 }
 
 }  // namespace
 
 int runInfo(const MeshOptions& options) {
-    const ThreadLimit threads(options.common);
-    checkReportFile(options.common, options.input);
-    checkReportOutputs(options.report, {&options.input, 1});
-    ProgressLine progress(options.common.isQuiet);
+    ProgramRun run("adaptiso-mesh", options.common, options.report, "");
+    OutputPlan(std::span(&options.input, 1)).check(options.common, options.report);
     ImageInfo info;
     try {
-        info = gather(options, progress);
+        info = gather(options, run.progress);
     } catch (const InternalError&) {
         throw;
     } catch (const Error& error) {
-        progress.clear();
+        run.progress.clear();
         info.fault = withoutPath(error.what(), options.input);
-        const Verdict verdict = verdictOf(std::current_exception());
-        deliverReport(options.common, options.input, infoJson(options, info, verdict),
+        run.verdict = verdictOf(std::current_exception());
+        deliverReport(options.common, options.input, infoJson(options, info, run.verdict),
                       [](auto&) {});
         markReported();
         throw;
     }
-    progress.clear();
-    const std::vector<Warning> warnings = namedWarnings(options, info);
-    printWarnings("adaptiso-mesh", options.common, warnings);
-    Verdict verdict;
-    verdict.failStrict(options.common, warnings, "");
-    std::vector<AtomicOutput> outputs;
-    const ReportResult page = writePage(options, info, warnings, outputs);
-    verdict.failReport(page.failure);
-    deliverReport(options.common, options.input, infoJson(options, info, verdict),
-                  [&](std::ostream& out) { printInfo(out, options, info); });
-    AtomicOutput::commit(outputs);
-    return printVerdict("adaptiso-mesh", verdict, baseName(options.input) + " was read");
+    run.warnings = namedWarnings(options, info);
+    run.printNewWarnings();
+    if (options.report.isWanted()) run.writePage([&] { return makePage(options, info); });
+    run.deliver([&] { return infoJson(options, info, run.verdict); },
+                [&](std::ostream& out) { printInfo(out, options, info); });
+    return run.end(baseName(options.input) + " was read");
 }
 
 }  // namespace adaptiso::mesher

@@ -100,8 +100,9 @@ class Info(ApplicationTest):
         write_nifti(self.path(name), from_function(20, "h", lambda x, y, z: 0 if x < -5 else 100 if x < 3 else 1000))
         for typed in (name, str(self.path(name))):
             text = self.mesh("--info", "--report", "page.html", typed).stdout
-            commands = text.partition("\nnext        ")[2].splitlines()
+            *commands, end = text.partition("\nnext        ")[2].splitlines()
             self.assertEqual([shlex.split(command)[-1] for command in commands], [typed] * 2)
+            self.assertEqual(end, "Wrote page.html; next: open page.html in a browser")
             self.mesh(*shlex.split(commands[0])[1:])
             self.assertNotIn("scans of today", self.path("page.html").read_text())
 
