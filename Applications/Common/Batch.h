@@ -40,7 +40,7 @@ struct BatchProgram {
     std::filesystem::path executable{};  ///< empty: this program
     std::string version{};               ///< of the executable, as --version prints it
     std::string inputOption{};           ///< that takes the input ("--t1"); empty: none does
-    Json asked{};                        ///< the request, for the record
+    Json request{};                      ///< the request, for the record
     /// Removes the outputs of an earlier run before another is made, so that none stays if it
     /// fails.
     bool removesFormer = false;

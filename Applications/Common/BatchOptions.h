@@ -20,7 +20,7 @@ struct BatchOptions {
     bool skipsExisting = false;
 
     /// An option of this struct is given.
-    bool isAsked() const {
+    bool isRequested() const {
         return !list.empty() || !outputFolder.empty() || !summary.empty() || jobs || skipsExisting;
     }
     /// The options of every run, as given ("--iso=100"), without those of this struct, --json,

@@ -310,7 +310,7 @@ void writeRecord(const fs::path& file, const RunRecord& record) {
     json["ended"] = record.hasEnded;
     json["date"] = record.date;
     json["says"] = record.says;
-    if (!record.asked.is_null()) json["asked"] = record.asked;
+    if (!record.request.is_null()) json["asked"] = record.request;
     json["options"] = json["inputs"] = json["keptOutputs"] = Json::array();
     for (const RecordedOption& option : record.options) {
         json["options"].push_back({{"name", option.name}, {"sha256", option.sha256}});

@@ -80,7 +80,7 @@ struct RunRecord {
     bool wasShort = false;  ///< of memory, disk or processes: it may pass elsewhere
     std::string says{};     ///< the result, in words
     std::string date{};     ///< of its end or, while it runs, its start: UTC, ISO 8601
-    Json asked{};           ///< adaptiso-bids's request; may be null
+    Json request{};         ///< adaptiso-bids's request; may be null
     std::vector<RecordedOption> options{};
     std::vector<RecordedFile> inputs{}, recordedOutputs{};
 

@@ -168,8 +168,8 @@ private:
             areCurrent_[n] = earlier.isCurrent;
         }
         if (!earlier.why.empty()) return false;
-        if (!program_.asked.is_null() && earlier.record.asked != program_.asked) {
-            earlier.record.asked = program_.asked;  // the same result, in other words
+        if (!program_.request.is_null() && earlier.record.request != program_.request) {
+            earlier.record.request = program_.request;  // the same result, in other words
             writeRecord(runs_[n].record, earlier.record);
         }
         earlier.record.isOfEarlierRun = true;
@@ -184,7 +184,7 @@ private:
         record.name = run.item.name;
         for (const fs::path& input : run.item.inputs) record.files.push_back(baseName(input));
         record.date = recordDate();
-        record.asked = program_.asked;
+        record.request = program_.request;
         record.options = run.options;
         return record;
     }
@@ -426,12 +426,12 @@ std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record) {
         if (!isRecorded) return "its record is damaged";
     }
     for (const RecordedFile& output : record.recordedOutputs) {
-        const bool isAsked =
+        const bool isWanted =
             output.option == kOutput || std::ranges::any_of(run.extras, [&](const auto& extra) {
                 return extra.first == output.option;
             });
         const fs::path path = run.item.folder / output.file;
-        const FileChange change = isAsked ? changeOf(output, path) : FileChange::None;
+        const FileChange change = isWanted ? changeOf(output, path) : FileChange::None;
         if (change != FileChange::None) return path.filename().string() + " " + changeText(change);
     }
     return {};

@@ -31,14 +31,11 @@ void declareMesherOptions(CLI::App& app, MesherOptions& options, const std::stri
         "Fill the space between the walls with tetrahedra by this program, which "
         "must be installed: " +
             files);
-    group.number(
-        "--element-size", "MM", options.elementMm, {.least = 0.5, .most = 50, .unit = "mm"},
-        "Longest edge of an equilateral tetrahedron (default: 5); at the walls elements are "
-        "as small as their triangles");
+    group.rows(elementOptions(), options);
 }
 
 void requireMesher(const MesherOptions& options) {
-    if (!options.isAsked()) return;
+    if (!options.isRequested()) return;
     temporaryFolder();  // there must be one
     if (isInstalled(options.mesher)) return;
     throw FileError("--tetrahedra " + options.mesher + ": " + options.mesher +

@@ -133,7 +133,7 @@ CLI::Option* OptionGroup::row(const OptionFacts& facts, OptionKind kind,
         if (kind == OptionKind::Number) {
             take(parseNumber(name, text, facts.rule));
         } else if (kind == OptionKind::Count) {
-            take(parseCount(name, text, 0, mostOf(facts.rule)));
+            take(parseCount(name, text, leastOf(facts.rule), mostOf(facts.rule)));
         } else if (kind == OptionKind::Choice) {
             take(words[parseChoice(name, text, words)]);
         } else if (facts.isUsable == nullptr || facts.isUsable(text)) {

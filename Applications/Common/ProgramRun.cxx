@@ -83,7 +83,7 @@ std::vector<Picture> ProgramRun::writePage(const std::function<Report()>& make) 
     const auto makeWhole = [&] {
         Report report = make();
         report.warnings = linesOf(warnings);
-        tellStrict(report, common_, warnings, consequence_);
+        addStrictVerdict(report, common_, warnings, consequence_);
         return report;
     };
     ReportResult page =

@@ -50,13 +50,13 @@ void requirePlaces(const RunRecord& record, const fs::path& folder) {
 
 /// The request of adaptiso-bids, as its group level takes it.
 /// \throws Json::exception  a value has another type  \throws FileError  it is no such request
-void requireRequest(const Json& asked) {
-    if (!asked.is_object()) throw FileError("its request is no object");
+void requireRequest(const Json& request) {
+    if (!request.is_object()) throw FileError("its request is no object");
     for (const char* key : {"product", "options", "segmentations"}) {
-        static_cast<void>(asked.value(key, std::string()));
+        static_cast<void>(request.value(key, std::string()));
     }
-    for (const char* key : {"pictures", "strict"}) static_cast<void>(asked.value(key, false));
-    for (const std::string& code : asked.value("allow", std::vector<std::string>())) {
+    for (const char* key : {"pictures", "strict"}) static_cast<void>(request.value(key, false));
+    for (const std::string& code : request.value("allow", std::vector<std::string>())) {
         if (code.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos) {
             throw FileError("it allows what is no warning's code");
         }
@@ -72,8 +72,8 @@ RunRecord recordFrom(const Json& json) {
     record.hasEnded = json.at("ended");
     record.date = json.at("date");
     record.says = json.at("says");
-    record.asked = json.value("asked", Json());
-    if (!record.asked.is_null()) requireRequest(record.asked);
+    record.request = json.value("asked", Json());
+    if (!record.request.is_null()) requireRequest(record.request);
     record.name = json.at("name");
     record.files = json.at("files").get<std::vector<std::string>>();
     if (!json.at("exitCode").is_null()) record.exitCode = wholeNumber<int>(json.at("exitCode"));

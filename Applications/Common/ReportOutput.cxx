@@ -270,8 +270,8 @@ ReportResult writeReport(const std::function<Report()>& make, const std::string&
     return result;
 }
 
-void tellStrict(Report& report, const CommonOptions& common, std::span<const Warning> warnings,
-                const std::string& consequence) {
+void addStrictVerdict(Report& report, const CommonOptions& common,
+                      std::span<const Warning> warnings, const std::string& consequence) {
     if (!failsStrict(common, warnings)) return;
     const std::string text = strictFailure(common, warnings, consequence) + ".";
     const bool hasFailed = report.verdict == ReportVerdict::Failed;

@@ -71,8 +71,8 @@ ReportResult writeReport(const std::function<Report()>& make, const std::string&
 
 /// Where --strict and warnings make a run fail, the page says so.
 /// \param consequence  as strictFailure() takes it
-void tellStrict(Report& report, const CommonOptions& common, std::span<const Warning> warnings,
-                const std::string& consequence);
+void addStrictVerdict(Report& report, const CommonOptions& common,
+                      std::span<const Warning> warnings, const std::string& consequence);
 
 /// The most places of one kind that a page lists.
 inline constexpr std::size_t kMostSpotsOfAKind = 12;

@@ -38,8 +38,7 @@ ReadVolume readMainImage(const fs::path& path, const std::string& role, BemRun& 
 }
 
 /// The boundaries in `images`. Errors name the option and the file.
-HeadBoundaries boundariesIn(const BemImages& images, BemRun& run,
-                            const BoundaryOptions& boundaries) {
+HeadBoundaries boundariesIn(const BemImages& images, const BemRun& run, const BemHooks& hooks) {
     const BemOptions& options = run.options;
     const std::map<std::string, fs::path> files{
         {"t1", options.t1},         {"brain-mask", options.brainMask},
@@ -58,8 +57,7 @@ HeadBoundaries boundariesIn(const BemImages& images, BemRun& run,
                     ? " (its header scales the stored values: " + scaling->second + ")"
                     : "");
     };
-    return run.timer.time(
-        "boundaries", [&] { return findBoundaries(run.model.source, images, boundaries, naming); });
+    return findBoundaries(run.model, images, hooks, naming);
 }
 
 /// Surfaces of the cortex, in the model's space.
@@ -85,11 +83,9 @@ std::vector<TriangleMesh> readCortex(BemRun& run, const std::vector<fs::path>& p
 
 }  // namespace
 
-HeadBoundaries boundariesFromImages(BemRun& run) {
+HeadBoundaries boundariesFromImages(BemRun& run, const BemHooks& hooks) {
     const BemOptions& options = run.options;
     const BemSource source = run.model.source;
-    BoundaryOptions boundaries = options.model.boundaries;
-    boundaries.progress = run.progress.callback();
     run.progress.show("read");
     std::deque<ReadVolume> read;  // what views are of
     BemImages images;
@@ -117,7 +113,7 @@ HeadBoundaries boundariesFromImages(BemRun& run) {
         }
     });
     run.model.pial = images.brain.pial;
-    return boundariesIn(images, run, boundaries);
+    return boundariesIn(images, run, hooks);
 }
 
 std::vector<TriangleMesh> readSurfaces(BemRun& run) {
@@ -153,9 +149,8 @@ void readSources(BemRun& run) {
     const BemOptions& options = run.options;
     if (options.sources.empty()) return;
     run.timer.time("read", [&] {
-        run.model.options.sources.surfaces =
-            readCortex(run, options.sources, "--sources", "source surface",
-                       options.surfaces.size() + options.pial.size());
+        run.model.cortex = readCortex(run, options.sources, "--sources", "source surface",
+                                      options.surfaces.size() + options.pial.size());
     });
 }
 

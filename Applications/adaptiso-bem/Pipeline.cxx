@@ -123,7 +123,7 @@ void checkOutputs(const BemOptions& options) {
 /// The first surfaces: extracted from the images (dense), or read and mended.
 std::vector<TriangleMesh> firstSurfaces(BemRun& run, const BemHooks& hooks) {
     if (run.model.source != BemSource::Surfaces) {
-        return extractSurfaces(boundariesFromImages(run), run.model, hooks);
+        return extractSurfaces(boundariesFromImages(run, hooks), run.model, hooks);
     }
     std::vector<TriangleMesh> surfaces = run.stage("read", [&] { return readSurfaces(run); });
     return naming("--surfaces",
@@ -133,12 +133,11 @@ std::vector<TriangleMesh> firstSurfaces(BemRun& run, const BemHooks& hooks) {
 /// Reads electrodes and landmarks, before there is a head.
 void readElectrodes(BemRun& run) {
     const BemOptions& options = run.options;
-    ElectrodeOptions& wanted = run.model.options.electrodes;
-    wanted.wantsLandmarks = options.files.writesBesa;
+    GivenElectrodes& given = run.model.givenElectrodes;
     if (!options.electrodes.empty()) {
-        wanted.file = readPoints(options.electrodes);
-        wanted.fileName = baseName(options.electrodes);
-        run.model.inputs.push_back({wanted.fileName, "electrodes", wanted.file->format});
+        given.file = readPoints(options.electrodes);
+        given.fileName = baseName(options.electrodes);
+        run.model.inputs.push_back({given.fileName, "electrodes", given.file->format});
     }
     if (!options.nasion) return;
     const AffineTransform toLps = inverse(lpsToFrame(CoordinateFrame::Ras, {}));
@@ -147,11 +146,11 @@ void readElectrodes(BemRun& run) {
     landmarks.leftEarMm = toLps(*options.leftEar);
     landmarks.rightEarMm = toLps(*options.rightEar);
     if (options.inion) landmarks.inionMm = toLps(*options.inion);
-    wanted.landmarks = landmarks;
+    given.landmarks = landmarks;
 }
 
 void putElectrodes(BemRun& run, const BemHooks& hooks) {
-    if (!run.model.hasModel() || !run.model.options.electrodes.areWanted()) return;
+    if (!run.model.hasModel() || !run.model.wantsElectrodes()) return;
     const fs::path& file = run.options.electrodes;
     naming(file.empty() ? std::string("--montage") : "--electrodes " + file.string(),
            [&] { placeElectrodes(run.model, hooks); });
@@ -256,7 +255,6 @@ void write(BemRun& run) {
 int runBem(const BemOptions& options) {
     BemRun run(options);
     run.model.options = options.model;
-    run.model.options.wantsHeadShape = options.files.writesFif;
     run.model.source = sourceOf(options);
     checkOutputs(options);
     requireMesher(options.tetrahedra);
@@ -275,7 +273,7 @@ int runBem(const BemOptions& options) {
         naming(options.sources.empty() ? "--source-grid" : "--sources",
                [&] { placeSources(run.model, hooks); });
     }
-    if (run.model.hasModel() && options.tetrahedra.isAsked()) {
+    if (run.model.hasModel() && options.tetrahedra.isRequested()) {
         run.stage("tetrahedra", [&] {
             takeTetrahedra(runMesher(headMesherInput(run.model.meshes), options.tetrahedra),
                            options.tetrahedra, run.model);

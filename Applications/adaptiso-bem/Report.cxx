@@ -83,10 +83,10 @@ void printReport(std::ostream& out, const BemRun& run) {
                 << " questions of plausibility noted (places in mm RAS):";
         }
         out << '\n';
-        for (const ToldNote& told : run.model.plausibility) {
-            if (!told.note.isNoted) continue;
-            out << "  noted: " << told.subject << ": " << told.note.name << ": "
-                << told.note.finding << placeText(told) << '\n';
+        for (const ReportedNote& reported : run.model.plausibility) {
+            if (!reported.note.isNoted) continue;
+            out << "  noted: " << reported.subject << ": " << reported.note.name << ": "
+                << reported.note.finding << placeText(reported) << '\n';
         }
     }
     if (run.options.isDryRun) {

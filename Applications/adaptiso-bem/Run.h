@@ -40,7 +40,7 @@ struct BemRun : ProgramRun {
 /// Reads the images asked for and finds the head's boundaries in them. Fills the model's inputs,
 /// warnings of reading, and image.
 /// \throws FileError, InvalidInput
-HeadBoundaries boundariesFromImages(BemRun& run);
+HeadBoundaries boundariesFromImages(BemRun& run, const BemHooks& hooks);
 
 /// Reads the surfaces asked for, in LPS mm (bringToOneFrame()), inside out.
 /// \throws FileError, InvalidInput

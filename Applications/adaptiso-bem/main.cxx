@@ -274,15 +274,10 @@ void declareElectrodes(CLI::App& app, BemOptions& options) {
 
 void declareSources(CLI::App& app, BemOptions& options) {
     const OptionGroup group(app, kSources);
-    SourceOptions& sources = options.model.sources;
-    constexpr std::int64_t kMostSources = 1'000'000;
     group.text("--sources", "MESH...", options.sources,
                "Dipoles along the normals of the cortex (lh.white rh.white): dipoles.txt for "
                "OpenMEEG, sources-src.fif for MNE");
-    group.count("--source-count", sources.count, 1, kMostSources,
-                "Sources of each of these surfaces, spread evenly (default: 4098)");
-    group.number("--source-grid", "MM", sources.gridMm, {.least = 1, .most = 50, .unit = "mm"},
-                 "Dipoles along x, y and z at the points of a grid instead, MM apart");
+    group.rows(sourceOptions(), options.model.sources);
 }
 
 void declareToolboxes(CLI::App& app, BemOptions& options) {
@@ -381,6 +376,8 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     afterParsing(app, [&app, &options] {
         if (options.surfaces.size() == 1) options.surfaces = surfacePaths(options.surfaces.front());
         checkCombinations(app, options);
+        options.model.wantsHeadShape = options.files.writesFif;
+        options.model.electrodes.wantsLandmarks = options.files.writesBesa;
         for (const CoordinateFrame frame : options.inputCoordinates) {
             options.model.inputCoordinates.emplace_back(frameWord(frame));
         }

@@ -214,11 +214,11 @@ std::vector<BatchItem> bidsImagesOf(const fs::path& subject,
     if (sessions.empty()) addImages(root, subject, target, images, ignored, items);
     for (const fs::path& session : foldersIn(subject, "ses-")) {
         const std::string name = session.filename().string();
-        const bool isAsked = sessions.empty() ||
-                             std::any_of(sessions.begin(), sessions.end(), [&](const auto& label) {
-                                 return withPrefix(label, "ses-") == name;
-                             });
-        if (isAsked) addImages(root, session, target / name, images, ignored, items);
+        const bool isWanted = sessions.empty() ||
+                              std::any_of(sessions.begin(), sessions.end(), [&](const auto& label) {
+                                  return withPrefix(label, "ses-") == name;
+                              });
+        if (isWanted) addImages(root, session, target / name, images, ignored, items);
     }
     return items;
 }

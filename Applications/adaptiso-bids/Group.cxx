@@ -321,10 +321,10 @@ private:
 
 // ---- the options of the participant level
 
-void takeAsked(const Json& asked, BidsOptions& options) {
-    const std::string product = asked.value("product", "");
-    options.wanted[product] = asked.value("options", "");
-    const std::string folder = asked.value("segmentations", "");
+void takeRequest(const Json& request, BidsOptions& options) {
+    const std::string product = request.value("product", "");
+    options.wanted[product] = request.value("options", "");
+    const std::string folder = request.value("segmentations", "");
     if (!folder.empty() && options.segmentations.empty()) {
         options.segmentations = (options.output / folder).lexically_normal();
         if (!liesIn(options.segmentations, options.dataset) &&
@@ -335,22 +335,22 @@ void takeAsked(const Json& asked, BidsOptions& options) {
                                options.segmentations.string());
         }
     }
-    options.makesPictures = options.makesPictures && asked.value("pictures", true);
-    options.common.isStrict = options.common.isStrict || asked.value("strict", false);
+    options.makesPictures = options.makesPictures && request.value("pictures", true);
+    options.common.isStrict = options.common.isStrict || request.value("strict", false);
     if (options.common.allowed.empty()) {
-        options.common.allowed = asked.value("allow", std::vector<std::string>());
+        options.common.allowed = request.value("allow", std::vector<std::string>());
     }
 }
 
 /// Fills in the request of most participants for each program, by the records.
-void takeAsked(BidsOptions& options) {
+void takeRequest(BidsOptions& options) {
     // of each program and participant the last request, with the record's date
     std::map<std::string, std::map<std::string, std::pair<std::string, Json>>> last;
     for (const fs::path& file : recordFiles(options.output, true)) {
         RunRecord record;
-        if (readRecord(file, record) != RecordFault::None || !record.asked.is_object()) continue;
-        auto& [date, asked] = last[record.program][entityOf(record.name, "sub")];
-        if (record.date >= date) std::tie(date, asked) = std::pair(record.date, record.asked);
+        if (readRecord(file, record) != RecordFault::None || !record.request.is_object()) continue;
+        auto& [date, request] = last[record.program][entityOf(record.name, "sub")];
+        if (record.date >= date) std::tie(date, request) = std::pair(record.date, record.request);
     }
     for (const auto& [program, participants] : last) {
         std::map<std::string, std::pair<std::size_t, std::string>> votes;  // and the last date
@@ -361,7 +361,7 @@ void takeAsked(BidsOptions& options) {
         }
         const auto most = std::ranges::max_element(
             votes, {}, [](const auto& vote) -> const auto& { return vote.second; });
-        takeAsked(parseJson<Json>(most->first), options);
+        takeRequest(parseJson<Json>(most->first), options);
     }
 }
 
@@ -419,7 +419,7 @@ void fillInOptions(BidsOptions& options) {
     if (!options.namesProducts()) {
         auto given = std::move(options.wanted);
         options.wanted.clear();
-        takeAsked(options);
+        takeRequest(options);
         for (auto& [product, list] : given) options.wanted[product] = list;
     }
     if (!options.namesProducts()) options.wanted["surfaces"] = "iso=auto";  // an old version's
@@ -559,7 +559,7 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     std::string json;
     if (common.wantsJson()) {
         Json report = reportHead("adaptiso-bids/1", kProgram, verdict, chosen.warnings);
-        report.update(Json{{"options", askedOf(options)},
+        report.update(Json{{"options", requestOf(options)},
                            {"participants", participants.size()},
                            {"wholeParticipants", whole},
                            {"surfaces", good},

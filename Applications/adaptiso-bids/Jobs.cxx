@@ -149,7 +149,7 @@ Job newJob(const BidsOptions& options, const std::string& product) {
     program.version = info.version;
     program.outputOptions = {"--pictures"};
     program.removesFormer = true;
-    program.asked = askedOf(options, product);
+    program.request = requestOf(options, product);
     BatchOptions& batch = job.batch;
     batch.outputFolder = options.output;
     batch.jobs = options.jobs;
@@ -234,26 +234,26 @@ std::vector<std::string> programOptions(const std::string& option, const std::st
     return options;
 }
 
-Json askedOf(const BidsOptions& options, const std::string& product) {
-    Json asked{{"product", product},
-               {"pictures", options.makesPictures},
-               {"strict", options.common.isStrict},
-               {"allow", options.common.allowed},
-               {"options", options.wanted.at(product)}};
+Json requestOf(const BidsOptions& options, const std::string& product) {
+    Json request{{"product", product},
+                 {"pictures", options.makesPictures},
+                 {"strict", options.common.isStrict},
+                 {"allow", options.common.allowed},
+                 {"options", options.wanted.at(product)}};
     if (product == "labels" && !options.segmentations.empty()) {
         std::error_code error;
-        asked["segmentations"] =
+        request["segmentations"] =
             fs::proximate(options.segmentations, options.output, error).generic_string();
     }
-    return asked;
+    return request;
 }
 
-Json askedOf(const BidsOptions& options) {
-    Json asked = Json::array();
+Json requestOf(const BidsOptions& options) {
+    Json request = Json::array();
     for (const char* const product : kProducts) {
-        if (options.makes(product)) asked.push_back(askedOf(options, product));
+        if (options.makes(product)) request.push_back(requestOf(options, product));
     }
-    return asked;
+    return request;
 }
 
 std::vector<Job> findJobs(const BidsOptions& options, const std::vector<fs::path>& subjects) {

@@ -20,8 +20,8 @@ struct Job {
 };
 
 /// The request for a product, kept in its records for the group level; of all products, a list.
-Json askedOf(const BidsOptions& options, const std::string& product);
-Json askedOf(const BidsOptions& options);
+Json requestOf(const BidsOptions& options, const std::string& product);
+Json requestOf(const BidsOptions& options);
 
 /// All that is asked for except the check, for the images of `subjects`. `options` outlives it.
 /// \throws UsageError  an option that the program lacks  \throws InvalidInput

@@ -89,14 +89,14 @@ public:
             checkFile(file);
             // surfaces that lie in each other are needed together, others one at a time
             if (options_.isNested) continue;
-            askWhatIsUsual();
+            assessPlausibility();
             measureDeviations();
             keepForReport();
             meshes_.clear();
         }
         if (options_.isNested) {
             checkNested();
-            askWhatIsUsual();
+            assessPlausibility();
             measureDeviations();
             keepForReport();
         }
@@ -153,8 +153,12 @@ private:
             return;
         }
         run_.stage("check", [&] {
-            surface.facts = measureSurface(
-                loaded.mesh.file.mesh, sizeLimitsOf(options_.profileInUse()), options_.maxPairs);
+            TriangleMesh& mesh = loaded.mesh.file.mesh;
+            surface.facts =
+                measureSurface(mesh, sizeLimitsOf(options_.profileInUse()), options_.maxPairs);
+            if (surface.facts.topology.count(TopologyDefect::IndexOutOfRange) > 0) {
+                replaceBadIndices(mesh);
+            }
         });
         if (options_.measuresWalls) {
             run_.stage("walls", [&] {
@@ -269,7 +273,7 @@ private:
     }
 
     /// Checks the plausibility of a head model's boundary, or of all of them.
-    void askWhatIsUsual() {
+    void assessPlausibility() {
         if (options_.profileInUse() != Profile::Bem || meshes_.empty()) return;
         run_.stage("plausibility", [&] {
             std::vector<NamedMesh> meshes;
@@ -286,9 +290,10 @@ private:
             for (HeadNote& note : judgePlausibility(surfaces, asked)) {
                 std::string subject = nameOf(meshes_[note.surface]);
                 if (note.next) subject += " in " + nameOf(meshes_[*note.next]);
-                ToldNote told{std::move(note), std::move(subject), common.known(), {}};
-                for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toFrame(p));
-                run_.notes.push_back(std::move(told));
+                ReportedNote reported{std::move(note), std::move(subject), common.known(), {}};
+                for (const Vec3& p : reported.note.pointsMm)
+                    reported.placesMm.push_back(toFrame(p));
+                run_.notes.push_back(std::move(reported));
             }
         });
     }
@@ -388,7 +393,7 @@ bool CheckRun::hasPassed() const {
 
 int runCheck(const CheckOptions& options) {
     if (options.isSelfTest) return runSelfTest(options);
-    if (options.batch.isAsked()) return runCheckBatch(options);
+    if (options.batch.isRequested()) return runCheckBatch(options);
     CheckRun run(options);
     checkOutputs(options);
     Checker checker(run);

@@ -62,7 +62,7 @@ struct CheckRun : ProgramRun {
     std::vector<NestingRun> nesting;
     std::optional<CoordinateFrame> nestingFrame;  ///< of the points in nesting; empty: not known
     AffineTransform toNestingFrame;               ///< from that in which it was measured
-    std::vector<ToldNote> notes;  ///< of head models: what is unusual, asked by the profile bem
+    std::vector<ReportedNote> notes;  ///< of head models: what is unusual, asked by the profile bem
 
     bool hasPassed() const;  ///< all that is required holds, of all files
     bool hasFailedCheck() const;

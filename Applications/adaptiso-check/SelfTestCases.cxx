@@ -260,7 +260,7 @@ private:
     }
 
     /// That adaptiso-check finds nothing wrong with a surface of so many pieces and handles.
-    void addSound(TriangleMesh mesh, int pieces, int genus) {
+    void addSound(const TriangleMesh& mesh, int pieces, int genus) {
         const CheckRules options;
         const SurfaceFacts facts =
             measureSurface(mesh, sizeLimitsOf(options.profileInUse()), options.maxPairs);
@@ -387,13 +387,13 @@ private:
         CheckRules options;
         options.profile = Profile::Bem;
         about("ball without a defect", [&] {
-            TriangleMesh mesh = ball;
             const SurfaceFacts facts =
-                measureSurface(mesh, sizeLimitsOf(Profile::Bem), options.maxPairs);
+                measureSurface(ball, sizeLimitsOf(Profile::Bem), options.maxPairs);
             addCount("checks failed", 0,
                      static_cast<double>(failedChecks(judgeSurface(facts, options))));
         });
-        const auto plant = [&](const std::string& name, std::string_view key, TriangleMesh mesh) {
+        const auto plant = [&](const std::string& name, std::string_view key,
+                               const TriangleMesh& mesh) {
             about("defect: " + name, [&] {
                 const SurfaceFacts facts =
                     measureSurface(mesh, sizeLimitsOf(Profile::Bem), options.maxPairs);

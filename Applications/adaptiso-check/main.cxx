@@ -78,7 +78,7 @@ void checkCombinations(const CheckOptions& options) {
         throw UsageError("--nested: needs at least two files, from inside to outside");
     }
     if (!findsFiles) {
-        const bool areRuns = options.batch.isAsked() && !options.isNested;
+        const bool areRuns = options.batch.isRequested() && !options.isNested;
         checkInputCoordinates(options.inputCoordinates, areRuns ? 1 : options.files.size());
     }
     if (options.minGapMm && !options.isNested) throw UsageError("--min-gap: needs --nested");
@@ -148,7 +148,7 @@ void declareCheckOptions(CLI::App& app, CheckOptions& options) {
             checkSelfTestAlone(app);
             return;
         }
-        if (!options.batch.isAsked()) {
+        if (!options.batch.isRequested()) {
             std::vector<std::filesystem::path> files;
             for (const auto& file : options.files) {
                 for (auto& path : surfacePaths(file)) files.push_back(std::move(path));
@@ -161,9 +161,9 @@ void declareCheckOptions(CLI::App& app, CheckOptions& options) {
             {"--report", options.report.page}, {"--pictures", options.report.pictures}};
         checkPlaceholders(named, options.batch, options.common);
         for (const auto& [option, output] : named) {
-            if (!options.batch.isAsked()) requirePlaceholders(option, output, {});
+            if (!options.batch.isRequested()) requirePlaceholders(option, output, {});
         }
-        if (options.batch.isAsked()) keepRunOptions(app, options.batch);
+        if (options.batch.isRequested()) keepRunOptions(app, options.batch);
     });
 }
 

@@ -19,7 +19,7 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 struct FileKind {
     const MeshFormat* format;
     std::string files;
-    bool isAskedFor = true;
+    bool isRequested = true;
 };
 
 std::vector<FileKind> kindsOf(const LabelsRun& run) {
@@ -40,26 +40,26 @@ void measureRounding(const TriangleMesh& walls, const std::vector<Vec3>& exact,
                      const AffineTransform& toFrame, LabelsRun& run) {
     const std::string input = baseName(run.options.input);
     for (const FileKind& kind : kindsOf(run)) {
-        if (!kind.isAskedFor && run.leavesGiftiOut) continue;
+        if (!kind.isRequested && run.leavesGiftiOut) continue;
         const TriangleMesh stored = asStored(walls, kind.format->precision, toFrame);
         double longestMm = 0;
         for (std::size_t v = 0; v < exact.size(); ++v) {
             longestMm = std::max(longestMm, norm(stored.points[v] - exact[v]));
         }
-        double& roundingMm = kind.isAskedFor ? run.roundingMm : run.giftiRoundingMm;
+        double& roundingMm = kind.isRequested ? run.roundingMm : run.giftiRoundingMm;
         roundingMm = std::max(roundingMm, longestMm);
         const auto fault =
-            roundingFault(longestMm, run.askedBoundMm().value_or(kNoBound), *kind.format);
+            roundingFault(longestMm, run.requestedBoundMm().value_or(kNoBound), *kind.format);
         if (!fault) continue;
         const std::string text = kind.files + ": " + *fault;
-        if (kind.isAskedFor) throw InvalidInput(input + ": " + text);
+        if (kind.isRequested) throw InvalidInput(input + ": " + text);
         run.leavesGiftiOut = true;
         run.giftiRoundingMm = 0;
         run.warnings.push_back({"file-left-out", "all.surf.gii is left out; " + text, input});
     }
-    if (!run.askedBoundMm()) return;
+    if (!run.requestedBoundMm()) return;
     const auto warning = roundingWarning("regions/*" + run.options.format, run.errorBoundMm(),
-                                         *run.askedBoundMm(), run.roundingMm, *run.format);
+                                         *run.requestedBoundMm(), run.roundingMm, *run.format);
     if (warning) run.warnings.push_back(*warning);
 }
 
@@ -76,7 +76,7 @@ void fitToFiles(LabelComplex& complex, LabelsRun& run) {
         int precisions = 0;
         CoordinatePrecision last = CoordinatePrecision::Float64;
         for (const FileKind& kind : kindsOf(run)) {
-            if (kind.format->precision == last || (!kind.isAskedFor && run.leavesGiftiOut)) {
+            if (kind.format->precision == last || (!kind.isRequested && run.leavesGiftiOut)) {
                 continue;
             }
             last = kind.format->precision;
@@ -85,7 +85,7 @@ void fitToFiles(LabelComplex& complex, LabelsRun& run) {
             moved += harm.movedPoints;
             if (!harm) continue;
             const std::string text = kind.files + ": " + textOf(harm, *kind.format);
-            if (kind.isAskedFor) throw InvalidInput(input + ": " + text);
+            if (kind.isRequested) throw InvalidInput(input + ": " + text);
             run.leavesGiftiOut = true;
             run.warnings.push_back({"file-left-out", "all.surf.gii is left out; " + text, input});
         }

@@ -227,7 +227,7 @@ int runLabels(const LabelsOptions& given) {
         const LabelComplex stored = asStored(complex, run);
         checkComplex(stored, RegionSurfaces(stored, labelsOf(run.regions)), map, run);
     }
-    if (options.tetrahedra.isAsked() && run.holdsPromises()) {
+    if (options.tetrahedra.isRequested() && run.holdsPromises()) {
         run.stage("tetrahedra", [&] { makeTetrahedra(complex, run); });
     }
     warnOfCount(run);

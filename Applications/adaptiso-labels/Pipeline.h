@@ -43,7 +43,7 @@ struct LabelsOptions {
 
     /// Whether each input is a run of its own (Batch.h).
     bool isBatch() const {
-        return batch.isAsked() || inputs.size() > 1 || holdsName(output) ||
+        return batch.isRequested() || inputs.size() > 1 || holdsName(output) ||
                holdsName(report.page) || holdsName(report.pictures);
     }
 };

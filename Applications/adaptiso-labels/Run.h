@@ -97,7 +97,7 @@ struct LabelsRun : ProgramRun {
     bool writesFolder() const { return holdsPromises() && !failsStrict(); }
 
     /// The bound that the walls must keep; empty with a count alone and at full resolution.
-    std::optional<double> askedBoundMm() const {
+    std::optional<double> requestedBoundMm() const {
         if (options.aims.maxErrorMm == 0.0) return std::nullopt;
         if (options.aims.maxErrorMm || options.aims.maxTriangles || options.aims.reduction) {
             return options.aims.maxErrorMm;

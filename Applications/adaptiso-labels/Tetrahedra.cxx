@@ -8,7 +8,7 @@
 namespace adaptiso::labels {
 
 void requireTetrahedraLabels(const LabelsRun& run) {
-    if (!run.options.tetrahedra.isAsked()) return;
+    if (!run.options.tetrahedra.isRequested()) return;
     for (const Region& region : run.regions) {
         if (region.label >= 1) continue;
         throw InvalidInput("--tetrahedra: the map has the label " + std::to_string(region.label) +

@@ -119,7 +119,7 @@ ReportTable boundsTable(const VolumeView& volume, const TriangleMesh& full, doub
     if (slabTotal == 0) return table;
     options.method = Method::Adaptive;
     const double voxelMm =
-        *askedBoundMm(options, volume.geometry()) / AdaptiveOptions::kDefaultMaxErrorVoxels;
+        *requestedBoundMm(options, volume.geometry()) / AdaptiveOptions::kDefaultMaxErrorVoxels;
     for (const double voxels : {AdaptiveOptions::kDefaultMaxErrorVoxels, 0.25, 0.5, 1.0}) {
         const bool isDefault = voxels == AdaptiveOptions::kDefaultMaxErrorVoxels;
         options.adaptive.maxErrorMm = voxels * voxelMm;

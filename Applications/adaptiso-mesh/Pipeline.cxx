@@ -207,7 +207,7 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     // tkRAS and voxel indices are those of the image that the user has
     write.volume = frameVolume(summary.frame, run.input.geometry);
     const FileDigits digits{summary.format, lpsToFrame(write.frame, write.volume),
-                            askedBoundMm(options.extraction, volume.geometry())};
+                            requestedBoundMm(options.extraction, volume.geometry())};
     if (options.verifies) {
         summary.verification = run.stage(
             "verify", [&] { return verify(volume, index, mesh, digits, options, summary); });
@@ -262,7 +262,7 @@ const ImageGeometry& meshedGeometry(const MeshRun& run) {
 }
 
 std::optional<Warning> digitsWarning(const SurfaceSummary& surface, const MeshRun& run) {
-    const auto asked = askedBoundMm(run.options.extraction, meshedGeometry(run));
+    const auto asked = requestedBoundMm(run.options.extraction, meshedGeometry(run));
     if (!asked) return std::nullopt;
     return roundingWarning(surface.file.filename().string(), *surface.errorBoundMm(), *asked,
                            surface.roundingMm.value_or(0), *surface.format);

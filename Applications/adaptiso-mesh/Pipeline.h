@@ -44,7 +44,7 @@ struct MeshOptions {
 
     /// Whether each input is a run of its own (Batch.h).
     bool isBatch() const {
-        return batch.isAsked() || inputs.size() > 1 || holdsName(output) ||
+        return batch.isRequested() || inputs.size() > 1 || holdsName(output) ||
                holdsName(report.page) || holdsName(report.pictures);
     }
     /// Whether the selection of pieces needs closed surfaces.

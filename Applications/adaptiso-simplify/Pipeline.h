@@ -30,7 +30,7 @@ struct SimplifyCommand {
 
     /// Whether each input is a run of its own (Batch.h).
     bool isBatch() const {
-        return batch.isAsked() || inputs.size() > 1 || holdsName(output) ||
+        return batch.isRequested() || inputs.size() > 1 || holdsName(output) ||
                holdsName(report.page) || holdsName(report.pictures) ||
                std::any_of(data.begin(), data.end(), holdsName);
     }

@@ -28,6 +28,10 @@ std::string countRule(std::int64_t least, std::int64_t most) {
                                                 : ", " + first + " or more");
 }
 
+std::int64_t leastOf(const NumberRule& rule) {
+    return static_cast<std::int64_t>(rule.least.value_or(0));
+}
+
 std::int64_t mostOf(const NumberRule& rule) {
     return rule.most ? static_cast<std::int64_t>(*rule.most) : kAnyCount;
 }

@@ -44,15 +44,15 @@ std::vector<Vec3> normalsTowards(const TriangleMesh& mesh, bool isOutward) {
     return normals;
 }
 
-/// A surface prepared for questions of distance and side.
-struct Asked {
-    explicit Asked(const TriangleMesh& surface)
+/// A surface prepared for searches of distance and side.
+struct SearchedSurface {
+    explicit SearchedSurface(const TriangleMesh& surface)
         : mesh(surface), tree(surface), inside(mesh, tree) {}
-    Asked(const Asked&) = delete;  // `inside` refers to `tree`
-    Asked(Asked&&) = delete;
-    Asked& operator=(const Asked&) = delete;
-    Asked& operator=(Asked&&) = delete;
-    ~Asked() = default;
+    SearchedSurface(const SearchedSurface&) = delete;  // `inside` refers to `tree`
+    SearchedSurface(SearchedSurface&&) = delete;
+    SearchedSurface& operator=(const SearchedSurface&) = delete;
+    SearchedSurface& operator=(SearchedSurface&&) = delete;
+    ~SearchedSurface() = default;
 
     const TriangleMesh& mesh;
     AabbTree tree;
@@ -66,7 +66,7 @@ struct Lack {
     ClosestPoint nearest;
 };
 
-Lack lackOf(const Vec3& p, const Asked& surface, Side wanted, double gapMm) {
+Lack lackOf(const Vec3& p, const SearchedSurface& surface, Side wanted, double gapMm) {
     Lack lack;
     lack.nearest = surface.tree.closestPoint(p);
     const double distance = std::sqrt(lack.nearest.squaredDistanceMm2);
@@ -106,8 +106,8 @@ private:
 };
 
 /// Adds needs of the moving surface's vertices: on the wrong side, or too near.
-void addOwnVertices(const TriangleMesh& moving, const Asked& fixed, const PushOptions& options,
-                    Needs& needs) {
+void addOwnVertices(const TriangleMesh& moving, const SearchedSurface& fixed,
+                    const PushOptions& options, Needs& needs) {
     const Side wanted = options.isOutward ? Side::Outside : Side::Inside;
     std::vector<Lack> lacks(moving.points.size());
     parallelForPieces(std::ssize(lacks), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -121,8 +121,8 @@ void addOwnVertices(const TriangleMesh& moving, const Asked& fixed, const PushOp
 }
 
 /// Adds needs from the other surface's vertices: those that poke through a triangle move it.
-void addOtherVertices(const Asked& moving, const TriangleMesh& fixed, const PushOptions& options,
-                      Needs& needs) {
+void addOtherVertices(const SearchedSurface& moving, const TriangleMesh& fixed,
+                      const PushOptions& options, Needs& needs) {
     const Side wanted = options.isOutward ? Side::Inside : Side::Outside;
     std::vector<Lack> lacks(fixed.points.size());
     parallelForPieces(std::ssize(lacks), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -140,8 +140,8 @@ void addOtherVertices(const Asked& moving, const TriangleMesh& fixed, const Push
 
 /// Adds needs from pairs of triangles too near between vertices. Pairs that meet part along the
 /// moving triangle's normal.
-void addTriangles(const Asked& moving, const Asked& fixed, const PushOptions& options,
-                  Needs& needs) {
+void addTriangles(const SearchedSurface& moving, const SearchedSurface& fixed,
+                  const PushOptions& options, Needs& needs) {
     struct Pair {
         std::int64_t triangle;
         double mm;
@@ -176,12 +176,13 @@ void addTriangles(const Asked& moving, const Asked& fixed, const PushOptions& op
     }
 }
 
-Needs findNeeds(const TriangleMesh& moving, const Asked& fixed, const PushOptions& options) {
-    const Asked asked(moving);
+Needs findNeeds(const TriangleMesh& moving, const SearchedSurface& fixed,
+                const PushOptions& options) {
+    const SearchedSurface searched(moving);
     Needs needs(moving.points.size());
     addOwnVertices(moving, fixed, options, needs);
-    addOtherVertices(asked, fixed.mesh, options, needs);
-    addTriangles(asked, fixed, options, needs);
+    addOtherVertices(searched, fixed.mesh, options, needs);
+    addTriangles(searched, fixed, options, needs);
     return needs;
 }
 
@@ -262,7 +263,7 @@ std::optional<Finding> pushApart(TriangleMesh& surface, const TriangleMesh& fixe
     constexpr int kMaxRounds = 100;
     const std::vector<Vec3> start = surface.points;
     const auto neighbours = neighboursOf(surface);
-    const Asked other(fixed);
+    const SearchedSurface other(fixed);
     PushOptions wanted = options;
     wanted.minGapMm *= kOvershoot;
     std::vector<Vec3> moved(start.size());

@@ -15,8 +15,7 @@ CheckRules bemRules(std::optional<double> minGapMm = std::nullopt) {
 }
 
 SurfaceFacts factsOf(const TriangleMesh& surface) {
-    TriangleMesh asked = surface;  // what measures may change is not the caller's
-    return measureSurface(asked, sizeLimitsOf(Profile::Bem), 1);
+    return measureSurface(surface, sizeLimitsOf(Profile::Bem), 1);
 }
 
 Vec3 middleOf(const TriangleMesh& mesh, std::int64_t triangle) {
@@ -68,75 +67,75 @@ void addToReport(const SurfaceFacts& facts, BemSurface& surface) {
 
 }  // namespace
 
-std::vector<Check> askOfSurface(const TriangleMesh& surface) {
+std::vector<Check> checkHeadSurface(const TriangleMesh& surface) {
     return judgeSurface(factsOf(surface), bemRules());
 }
 
-ModelChecks askOfModel(std::span<const TriangleMesh> surfaces, std::span<const double> gapsMm) {
-    ModelChecks asked;
+ModelChecks checkHeadSurfaces(std::span<const TriangleMesh> surfaces,
+                              std::span<const double> gapsMm) {
+    ModelChecks result;
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
-        asked.facts.push_back(factsOf(surfaces[n]));
-        const SurfaceFacts& facts = asked.facts.back();
+        result.facts.push_back(factsOf(surfaces[n]));
+        const SurfaceFacts& facts = result.facts.back();
         for (Check& check : judgeSurface(facts, bemRules())) {
             const Vec3 place = placeOf(check, facts, surfaces[n]);
-            asked.checks.push_back({bemSurfaceName(n, surfaces.size()), std::move(check), place});
+            result.checks.push_back({bemSurfaceName(n, surfaces.size()), std::move(check), place});
         }
     }
     for (std::size_t n = 0; n + 1 < surfaces.size(); ++n) {
-        asked.nesting.push_back(checkNesting(surfaces[n], surfaces[n + 1], {.maxPairs = 1}));
-        const NestingReport& report = asked.nesting.back();
+        result.nesting.push_back(checkNesting(surfaces[n], surfaces[n + 1], {.maxPairs = 1}));
+        const NestingReport& report = result.nesting.back();
         for (Check& check :
              judgeNesting(report, bemSurfaceName(n, surfaces.size()),
                           bemSurfaceName(n + 1, surfaces.size()), {}, bemRules(gapsMm[n]))) {
-            asked.checks.push_back({bemSurfaceName(n, surfaces.size()) + " in " +
-                                        bemSurfaceName(n + 1, surfaces.size()),
-                                    std::move(check), report.gap.nearest.pointA});
+            result.checks.push_back({bemSurfaceName(n, surfaces.size()) + " in " +
+                                         bemSurfaceName(n + 1, surfaces.size()),
+                                     std::move(check), report.gap.nearest.pointA});
         }
     }
-    return asked;
+    return result;
 }
 
 void checkModel(BemModel& model, const BemHooks& hooks) {
     hooks.stage("check", [&] {
-        const ModelChecks asked = askOfModel(inScannerRas(model.meshes), model.options.minGapsMm());
+        const ModelChecks result =
+            checkHeadSurfaces(inScannerRas(model.meshes), model.options.minGapsMm());
         const AffineTransform toLps = inverse(lpsToFrame(CoordinateFrame::Ras, {}));
         for (std::size_t n = 0; n < model.meshes.size(); ++n) {
-            addToReport(asked.facts[n], model.surfaces[n]);
+            addToReport(result.facts[n], model.surfaces[n]);
         }
         model.gaps.clear();
-        for (const NestingReport& report : asked.nesting) {
+        for (const NestingReport& report : result.nesting) {
             const NearestPoints& nearest = report.gap.nearest;
             model.gaps.push_back(
                 {nearest.distanceMm, toLps(nearest.pointA), toLps(nearest.pointB)});
         }
-        for (const auto& [subject, check, pointMm] : asked.checks) {
-            const std::string name = subject + ": " + std::string(check.name);
+        for (const auto& [subject, check, pointMm] : result.checks) {
             const bool isPassed = !check.breaksProfile();
-            model.checks.push_back({name, isPassed, check.finding,
-                                    isPassed ? std::nullopt : std::optional(toLps(pointMm))});
-            if (!isPassed) model.findings.push_back({name + ": " + check.finding, toLps(pointMm)});
+            model.addCheck({subject, std::string(check.name), isPassed, check.finding,
+                            isPassed ? std::nullopt : std::optional(toLps(pointMm))});
         }
     });
 }
 
-void askWhatIsUsual(BemModel& model, const BemHooks& hooks) {
+void assessPlausibility(BemModel& model, const BemHooks& hooks) {
     hooks.stage("check", [&] {
-        PlausibilityOptions asked;
-        asked.image = model.image;
-        asked.usual = UsualHead(model.options.boundaries.ageYears);
+        PlausibilityOptions options;
+        options.image = model.image;
+        options.usual = UsualHead(model.options.boundaries.ageYears);
         const AffineTransform toRas = lpsToFrame(CoordinateFrame::Ras, {});
-        for (HeadNote& note : judgePlausibility(model.meshes, asked)) {
+        for (HeadNote& note : judgePlausibility(model.meshes, options)) {
             std::string subject = bemSurfaceName(note.surface, model.meshes.size());
             if (note.next) subject += " in " + bemSurfaceName(*note.next, model.meshes.size());
-            ToldNote told{std::move(note), std::move(subject), CoordinateFrame::Ras, {}};
-            told.isWarned = told.note.isNoted && !told.note.warning.empty();
-            for (const Vec3& p : told.note.pointsMm) told.placesMm.push_back(toRas(p));
-            if (told.isWarned) {
-                model.warnings.push_back({std::string(told.note.warning),
-                                          told.subject + ": " + told.note.finding + ", at " +
-                                              rasText(told.note.pointsMm.front())});
+            ReportedNote reported{std::move(note), std::move(subject), CoordinateFrame::Ras, {}};
+            reported.isWarned = reported.note.isNoted && !reported.note.warning.empty();
+            for (const Vec3& p : reported.note.pointsMm) reported.placesMm.push_back(toRas(p));
+            if (reported.isWarned) {
+                model.warnings.push_back({std::string(reported.note.warning),
+                                          reported.subject + ": " + reported.note.finding +
+                                              ", at " + rasText(reported.note.pointsMm.front())});
             }
-            model.plausibility.push_back(std::move(told));
+            model.plausibility.push_back(std::move(reported));
         }
     });
 }

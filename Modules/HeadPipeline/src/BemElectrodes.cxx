@@ -70,11 +70,6 @@ AffineTransform toLps(CoordinateFrame frame, const BemModel& model) {
     return inverse(lpsToFrame(frame, model.tkRasVolume));
 }
 
-/// The file's points in LPS mm; none when landmarks are needed and not there yet.
-std::optional<CoordinateFrame> frameOf(const ElectrodeOptions& options) {
-    return options.frame ? options.frame : options.file->frame;
-}
-
 void guess(BemModel& model, BemElectrodes& placed) {
     const std::size_t innerSkull = model.options.boundaries.withBrain ? 1 : 0;
     const GuessedLandmarks guessed = guessLandmarks(model.meshes[innerSkull], model.meshes.back());
@@ -108,7 +103,7 @@ void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
     move = fit.move;
     placed.headPoints = HeadPoints{std::ssize(headPoints), fit};
     const Landmarks fitted{move(own.nasionMm), move(own.leftEarMm), move(own.rightEarMm)};
-    if (const auto& given = model.options.electrodes.landmarks) {
+    if (const auto& given = model.givenElectrodes.landmarks) {
         const auto off = [](const Vec3& a, const Vec3& b) { return formatFixed(norm(b - a), 1); };
         model.notes.push_back("landmarks: the head points moved those given: nasion by " +
                               off(given->nasionMm, fitted.nasionMm) + " mm, left ear by " +
@@ -131,14 +126,15 @@ void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
 
 /// The file's points in the model's space.
 std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
-    const ElectrodeOptions& options = model.options.electrodes;
-    PointFile file = *options.file;
-    addWarnings(model.warnings, file.warnings, options.fileName);
-    warnOfPlaceless(file, options.fileName, model);
-    guessUnit(file, options.fileName, model);
+    const std::string& name = model.givenElectrodes.fileName;
+    PointFile file = *model.givenElectrodes.file;
+    addWarnings(model.warnings, file.warnings, name);
+    warnOfPlaceless(file, name, model);
+    guessUnit(file, name, model);
     const std::optional<Landmarks> own = landmarksOf(file.points);
     AffineTransform move;
-    if (const auto frame = frameOf(options)) {
+    const std::optional<CoordinateFrame>& stated = model.options.electrodes.frame;
+    if (const auto frame = stated ? stated : file.frame) {
         move = toLps(*frame, model);
         if (own && !placed.landmarks) {
             placed.landmarks =
@@ -214,11 +210,11 @@ void project(std::vector<NamedPoint> points, BemModel& model, BemElectrodes& pla
 
 void place(BemModel& model, BemElectrodes& placed) {
     const ElectrodeOptions& options = model.options.electrodes;
-    if (options.landmarks) {
-        placed.landmarks = options.landmarks;
+    if (model.givenElectrodes.landmarks) {
+        placed.landmarks = model.givenElectrodes.landmarks;
         placed.landmarkOrigin = "given";
     }
-    if (options.file) project(inModelSpace(model, placed), model, placed);
+    if (model.givenElectrodes.file) project(inModelSpace(model, placed), model, placed);
     const bool needsLandmarks = options.positions || options.wantsLandmarks;
     if (!placed.landmarks && needsLandmarks) guess(model, placed);
     if (placed.landmarks) {

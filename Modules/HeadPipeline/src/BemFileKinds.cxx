@@ -87,7 +87,7 @@ BemFileFault checkSurfaces(const Source& source, const StoredSurfaces& held,
         return source.fault("a vertex lies " + formatNumber(farthest) + " mm from where it should");
     }
     if (!held.keepsPromises) return std::nullopt;
-    for (const ModelCheck& each : askOfModel(inMm, held.gapsMm).checks) {
+    for (const ModelCheck& each : checkHeadSurfaces(inMm, held.gapsMm).checks) {
         if (!each.check.breaksProfile()) continue;
         return Finding{each.subject + ": " + std::string(each.check.name) + ": " +
                            each.check.finding + " (in the file's coordinates)",

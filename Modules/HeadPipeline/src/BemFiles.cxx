@@ -44,13 +44,12 @@ void checkBemFiles(const fs::path& folder, const BemFileOptions& options, BemMod
             if (what.starts_with(folder.string() + "/")) what.erase(0, folder.string().size() + 1);
             fault = source.fault(what);
         }
-        BemCheck check{std::string(row.name) + ": " + std::string(row.promise), !fault, "", {}};
+        BemCheck check{std::string(row.name), std::string(row.promise), !fault, "", {}};
         if (fault) {
             check.detail = fault->what;
             check.pointMm = fault->pointMm;
-            model.findings.push_back({check.name + ": " + fault->what, fault->pointMm});
         }
-        model.checks.push_back(std::move(check));
+        model.addCheck(std::move(check));
     }
 }
 

@@ -52,10 +52,10 @@ Json surfaceJson(const std::string& name, const BemSurface& surface) {
 }
 
 /// As all points of this report.
-std::vector<ToldNote> inLps(std::vector<ToldNote> notes) {
-    for (ToldNote& told : notes) {
-        told.frame = CoordinateFrame::Lps;
-        told.placesMm = told.note.pointsMm;
+std::vector<ReportedNote> inLps(std::vector<ReportedNote> notes) {
+    for (ReportedNote& reported : notes) {
+        reported.frame = CoordinateFrame::Lps;
+        reported.placesMm = reported.note.pointsMm;
     }
     return notes;
 }
@@ -187,9 +187,7 @@ Json bemOptionsJson(const BemModelOptions& options) {
                             {"skull", options.conductivities.skull},
                             {"scalp", options.conductivities.scalp}};
     json["inputCoordinates"] = options.inputCoordinates;
-    json["sourceCount"] = options.sources.count;
-    json["sourceGridMm"] =
-        options.sources.gridMm > 0 ? Json(options.sources.gridMm) : Json(nullptr);
+    json.update(valuesJson(sourceOptions(), options.sources));
     return json;
 }
 
@@ -202,7 +200,7 @@ Json bemModelJson(const BemModel& model) {
     }
     for (const NestedGap& gap : model.gaps) gaps.push_back(gapJson(gap));
     for (const BemCheck& check : model.checks) {
-        checks.push_back({{"name", check.name},
+        checks.push_back({{"name", check.fullName()},
                           {"passed", check.isPassed},
                           {"detail", check.detail},
                           {"pointMm", check.pointMm ? vector(*check.pointMm) : Json(nullptr)}});

@@ -107,7 +107,7 @@ Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model) {
         flipOrientation(mesh);
         note(model, n, "was inside out and has been turned");
     }
-    for (const Check& check : askOfSurface(mesh)) {
+    for (const Check& check : checkHeadSurface(mesh)) {
         if (!check.breaksProfile() || check.key == "plausibleSize") continue;
         note(model, n, std::string(check.name) + ": " + check.finding + "; remeshed");
         return Need::NewTriangles;
@@ -118,7 +118,7 @@ Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model) {
 /// In metres nothing else that can be said of a surface makes sense.
 void findWrongSizes(const std::vector<TriangleMesh>& surfaces, BemModel& model) {
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
-        for (const Check& check : askOfSurface(surfaces[n])) {
+        for (const Check& check : checkHeadSurface(surfaces[n])) {
             if (check.key != "plausibleSize" || !check.breaksProfile()) continue;
             model.findings.push_back({bemSurfaceName(n, surfaces.size()) + ": " +
                                           std::string(check.name) + ": " + check.finding,

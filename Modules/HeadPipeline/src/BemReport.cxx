@@ -13,7 +13,7 @@ std::string pairName(std::size_t inner, std::size_t count) {
     return bemSurfaceName(inner, count) + " in " + bemSurfaceName(inner + 1, count);
 }
 
-void tellVerdict(const BemModel& model, Report& report) {
+void addVerdict(const BemModel& model, Report& report) {
     const std::size_t count = model.options.surfaceCount();
     const std::string layers = count == 1   ? "one layer"
                                : count == 3 ? "three layers"
@@ -44,7 +44,7 @@ std::string fileText(const BemInput& input) {
     return input.file.empty() ? input.format : input.file + " (" + input.format + ")";
 }
 
-void tellInputs(const BemModel& model, Report& report) {
+void addInputs(const BemModel& model, Report& report) {
     for (const BemInput& input : model.inputs) {
         report.inputs.push_back({input.role, fileText(input)});
     }
@@ -53,7 +53,7 @@ void tellInputs(const BemModel& model, Report& report) {
     report.inputs.insert(report.inputs.end(), facts.begin() + 1, facts.end());
 }
 
-void tellOptions(const BemModel& model, Report& report) {
+void addOptions(const BemModel& model, Report& report) {
     const BemModelOptions& options = model.options;
     const BoundaryOptions& head = options.boundaries;
     std::string triangles = model.source == BemSource::Surfaces
@@ -93,18 +93,15 @@ void tellOptions(const BemModel& model, Report& report) {
         {"FreeSurfer's files in", model.tkRasVolume ? "tkRAS mm" : "scanner RAS mm"});
 }
 
-/// "inner_skull: one closed surface of genus 0" is told in two columns.
-void tellChecks(const BemModel& model, Report& report) {
+void addChecks(const BemModel& model, Report& report) {
     for (const BemCheck& check : model.checks) {
-        const std::size_t colon = check.name.find(": ");
-        report.checks.push_back(
-            {check.name.substr(0, colon),
-             colon == std::string::npos ? check.name : check.name.substr(colon + 2),
-             check.isPassed ? ReportOutcome::Passed : ReportOutcome::Failed, check.detail});
+        report.checks.push_back({check.subject, check.name,
+                                 check.isPassed ? ReportOutcome::Passed : ReportOutcome::Failed,
+                                 check.detail});
     }
 }
 
-void tellSpots(const BemModel& model, Report& report) {
+void addSpots(const BemModel& model, Report& report) {
     for (const Finding& finding : model.findings) {
         report.spots.push_back({finding.what, finding.pointMm});
     }
@@ -173,7 +170,7 @@ TriangleMesh electrodeMarks(const std::vector<NamedPoint>& points) {
     return marks;
 }
 
-void tellElectrodes(const BemModel& model, Report& report) {
+void addElectrodes(const BemModel& model, Report& report) {
     if (!model.electrodes) return;
     const BemElectrodes& placed = *model.electrodes;
     const std::vector<NamedPoint> all = placed.all();
@@ -201,11 +198,11 @@ void tellElectrodes(const BemModel& model, Report& report) {
 Report bemReport(const BemModel& model,
                  const std::vector<std::pair<std::string, std::uintmax_t>>& files) {
     Report report;
-    tellVerdict(model, report);
-    tellInputs(model, report);
-    tellOptions(model, report);
-    tellChecks(model, report);
-    tellSpots(model, report);
+    addVerdict(model, report);
+    addInputs(model, report);
+    addOptions(model, report);
+    addChecks(model, report);
+    addSpots(model, report);
     report.warnings = linesOf(model.warnings);
     addNotes(model.plausibility, report);
     if (!model.checks.empty()) report.tables.push_back(surfaceTable(model));
@@ -232,7 +229,7 @@ Report bemReport(const BemModel& model,
             formatShort(kFarFromSeenMm) + " mm; beyond " + formatShort(kSeenWithinMm) +
             " mm it is a guess (closed, filled, cut, or as thick as usual).");
     }
-    tellElectrodes(model, report);
+    addElectrodes(model, report);
     return report;
 }
 

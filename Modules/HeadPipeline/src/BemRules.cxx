@@ -147,6 +147,25 @@ Fault faultOfCombinations(const BemModelOptions& options, const BemRequest& requ
 
 }  // namespace
 
+const Options<SourceOptions>& sourceOptions() {
+    static const Options<SourceOptions> kRows{
+        option<&SourceOptions::count>(
+            {.name = "source-count",
+             .key = "sourceCount",
+             .valueName = "N",
+             .help = "Sources of each surface of the cortex, spread evenly",
+             .standard = "4098",
+             .rule = {.least = 1, .most = 1'000'000}}),
+        option<&SourceOptions::gridMm>({.name = "source-grid",
+                                        .key = "sourceGridMm",
+                                        .valueName = "MM",
+                                        .help = "Dipoles along x, y and z at the points of a grid "
+                                                "instead of on a cortex, this far apart",
+                                        .rule = {.least = 1, .most = 50, .unit = "mm"}}),
+    };
+    return kRows;
+}
+
 const Options<BoundaryOptions>& boundaryOptions() {
     static const Options<BoundaryOptions> kRows{
         option<&BoundaryOptions::sulciMm>(
@@ -279,10 +298,13 @@ std::string bemFault(const BemModelOptions& options, const BemRequest& request,
     return fault ? named(*fault, naming) : "";
 }
 
-HeadBoundaries findBoundaries(BemSource source, const BemImages& images,
-                              const BoundaryOptions& options, const BemNaming& naming) {
-    try {
-        switch (source) {
+HeadBoundaries findBoundaries(const BemModel& model, const BemImages& images, const BemHooks& hooks,
+                              const BemNaming& naming) {
+    HeadBoundaries found;
+    BoundaryOptions options = model.options.boundaries;
+    options.progress = hooks.progress;
+    const auto find = [&]() -> HeadBoundaries {
+        switch (model.source) {
             case BemSource::T1:
                 return boundariesFromT1(images.main.front(), images.brain, options);
             case BemSource::Labels:
@@ -296,6 +318,10 @@ HeadBoundaries findBoundaries(BemSource source, const BemImages& images,
                 break;
         }
         throw InternalError("findBoundaries: surfaces are no image");
+    };
+    try {
+        hooks.stage("boundaries", [&] { found = find(); });
+        return found;
     } catch (const SourceError& error) {
         const char* name = "pial";
         if (error.source() == BoundarySource::Lesion) name = "lesion";
@@ -305,7 +331,7 @@ HeadBoundaries findBoundaries(BemSource source, const BemImages& images,
         }
         throw InvalidInput(naming(name) + ": " + error.what());
     } catch (const InvalidInput& error) {
-        throw InvalidInput(naming(toString(source)) + ": " + error.what());
+        throw InvalidInput(naming(toString(model.source)) + ": " + error.what());
     }
 }
 

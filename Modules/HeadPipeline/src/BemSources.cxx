@@ -34,7 +34,7 @@ void add(SourceMoves& all, const SourceMoves& more) {
 }
 
 /// Notes and warnings of sources that were nearer to `surface` than one edge.
-void tellMoves(const BemSources& sources, const std::string& surface, BemModel& model) {
+void reportMoves(const BemSources& sources, const std::string& surface, BemModel& model) {
     const SourceMoves& moves = sources.moves;
     const std::int64_t count = sources.count(), all = count + moves.dropped;
     constexpr double kMostOutside = 0.5, kManyOutside = 0.05, kFarMm = 5;
@@ -75,25 +75,24 @@ std::int64_t BemSources::count() const {
 }
 
 void placeSources(BemModel& model, const BemHooks& hooks) {
-    SourceOptions& options = model.options.sources;
-    if (!options.areWanted()) return;
+    const SourceOptions& options = model.options.sources;
+    if (model.cortex.empty() && !options.gridMm) return;
     hooks.stage("sources", [&] {
         BemSources sources;
         const TriangleMesh& compartment = model.meshes.front();
         const std::string name = bemSurfaceName(0, model.meshes.size());
-        if (options.gridMm > 0) {
-            sources.spaces.push_back(gridSources(compartment, options.gridMm));
+        if (options.gridMm) {
+            sources.spaces.push_back(gridSources(compartment, *options.gridMm));
             if (sources.count() == 0) {
-                throw InvalidInput("a grid of " + formatNumber(options.gridMm) +
+                throw InvalidInput("a grid of " + formatNumber(*options.gridMm) +
                                    " mm has no point within " + name +
                                    ", one edge away; give a finer grid, or more vertices");
             }
         }
-        if (options.surfaces.size() == 2 &&
-            options.surfaces[0].points == options.surfaces[1].points) {
+        if (model.cortex.size() == 2 && model.cortex[0].points == model.cortex[1].points) {
             throw InvalidInput("both surfaces are the same; give one for each hemisphere");
         }
-        for (TriangleMesh& surface : options.surfaces) {
+        for (TriangleMesh& surface : model.cortex) {
             sources.spaces.push_back(surfaceSources(std::move(surface), options.count));
             if (sources.spaces.back().isOpen) {
                 model.notes.push_back(
@@ -103,14 +102,14 @@ void placeSources(BemModel& model, const BemHooks& hooks) {
             }
             add(sources.moves, keepWithin(sources.spaces.back(), compartment));
         }
-        options.surfaces.clear();
+        model.cortex.clear();
         // LPS: the left one has the larger x
         std::stable_sort(
             sources.spaces.begin(), sources.spaces.end(),
             [](const SourceSpace& a, const SourceSpace& b) { return middleX(a) > middleX(b); });
-        tellMoves(sources, name, model);
+        reportMoves(sources, name, model);
         model.notes.push_back("sources: " + formatCount(sources.count()) +
-                              (options.gridMm > 0 ? " on a grid" : " at vertices of the cortex"));
+                              (options.gridMm ? " on a grid" : " at vertices of the cortex"));
         model.sources = std::move(sources);
     });
 }

@@ -155,7 +155,7 @@ std::string moveText(std::size_t n, const BemModel& model) {
 }
 
 /// Warns where a remeshed surface differs from the given one.
-void tellRemade(const TriangleMesh& given, std::size_t n, BemModel& model) {
+void reportRemade(const TriangleMesh& given, std::size_t n, BemModel& model) {
     constexpr double kRemadeMm = 2;  // voxels, smoothing and triangles take less
     const AabbTree tree(model.meshes[n]);
     std::int64_t far = 0;
@@ -181,9 +181,9 @@ void tellRemade(const TriangleMesh& given, std::size_t n, BemModel& model) {
 
 /// Surfaces that were given are changed by no more than their digits without a warning; those found
 /// in an image lie where they do to a fraction of a voxel.
-void tellMoves(BemModel& model) {
+void reportMoves(BemModel& model) {
     constexpr double kGivenMm = 0.01, kFoundMm = 0.5;
-    for (std::size_t n = 0; n < model.given.size(); ++n) tellRemade(model.given[n], n, model);
+    for (std::size_t n = 0; n < model.given.size(); ++n) reportRemade(model.given[n], n, model);
     if (!model.given.empty()) return;
     for (std::size_t n = 0; n < model.meshes.size(); ++n) {
         const double mm = model.surfaces[n].move.maximumMm;
@@ -307,8 +307,8 @@ void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemH
         if (model.hasModel()) model.meshes = std::move(surfaces);
     }
     if (model.hasModel()) checkModel(model, hooks);
-    if (model.hasModel()) askWhatIsUsual(model, hooks);
-    if (model.hasModel()) tellMoves(model);
+    if (model.hasModel()) assessPlausibility(model, hooks);
+    if (model.hasModel()) reportMoves(model);
     if (model.hasModel()) checkPial(model);
     if (model.hasModel()) compareWithSegmentation(model);
     for (std::size_t n = 0; model.hasModel() && n < model.seenMm.size(); ++n) {

@@ -13,16 +13,14 @@ namespace adaptiso {
 namespace {
 
 void addCheck(BemModel& model, const TetrahedraCheck& check) {
-    model.checks.push_back({"tetrahedra: " + check.name, check.isPassed, check.detail, {}});
-    if (check.isPassed) return;
-    const Vec3 place = model.meshes.front().points.front();
-    model.checks.back().pointMm = place;
-    model.findings.push_back({"tetrahedra: " + check.name + ": " + check.detail, place});
+    BemCheck kept{"tetrahedra", check.name, check.isPassed, check.detail, {}};
+    if (!check.isPassed) kept.pointMm = model.meshes.front().points.front();
+    model.addCheck(std::move(kept));
 }
 
 /// Notes layers whose elements are longer than asked for: gmsh keeps the surfaces' triangles.
 void noteLongElements(BemModel& model, const TetrahedralMesh& mesh,
-                      std::span<const TetrahedraRegion> regions, double askedMm) {
+                      std::span<const TetrahedraRegion> regions, double requestedMm) {
     constexpr double kLonger = 1.5, kNotedShare = 0.1;  // irregular ones are a half longer
     for (const TetrahedraRegion& region : regions) {
         std::int64_t count = 0, longer = 0;
@@ -36,7 +34,7 @@ void noteLongElements(BemModel& model, const TetrahedralMesh& mesh,
                 }
             }
             ++count;
-            longer += mm > kLonger * askedMm ? 1 : 0;
+            longer += mm > kLonger * requestedMm ? 1 : 0;
             longestMm = std::max(longestMm, mm);
         }
         const double share = static_cast<double>(longer) / static_cast<double>(count);
@@ -44,7 +42,7 @@ void noteLongElements(BemModel& model, const TetrahedralMesh& mesh,
         model.notes.push_back(
             region.name + ": " + formatRounded(100 * share) +
             " % of its elements are longer than " + formatShort(kLonger) +
-            " times --element-size " + formatShort(askedMm) + ", up to " +
+            " times --element-size " + formatShort(requestedMm) + ", up to " +
             formatLength(longestMm, 1) +
             " mm, as the triangles of its surfaces are; more --vertices shorten them");
     }

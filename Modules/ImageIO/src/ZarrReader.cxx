@@ -30,23 +30,23 @@ std::uint64_t chosenIndex(const fs::path& root, const ZarrAxis& axis, std::uint6
                           const ReadOptions& options) {
     const bool isChannel = axis.kind == ZarrAxis::Kind::Channel;
     const bool isTime = axis.kind == ZarrAxis::Kind::Time;
-    const std::optional<std::int64_t> asked = isChannel ? options.channel
-                                              : isTime  ? options.timePoint
-                                                        : options.volumeIndex;
+    const std::optional<std::int64_t> wanted = isChannel ? options.channel
+                                               : isTime  ? options.timePoint
+                                                         : options.volumeIndex;
     const char* const option = isChannel ? "--channel" : isTime ? "--time" : "--volume-index";
     const char* const what = isChannel ? "channel" : isTime ? "time point" : "volume";
     const bool isVolume = !isChannel && !isTime;
-    if (!asked && extent == 1) return 0;
-    if (!asked || *asked < 0 || static_cast<std::uint64_t>(*asked) >= extent) {
+    if (!wanted && extent == 1) return 0;
+    if (!wanted || *wanted < 0 || static_cast<std::uint64_t>(*wanted) >= extent) {
         const std::string fault =
-            asked ? fmt::format("there is no {} {}: it holds {}", what, *asked, extent)
-                  : fmt::format("holds {} {}s", extent, what);
+            wanted ? fmt::format("there is no {} {}: it holds {}", what, *wanted, extent)
+                   : fmt::format("holds {} {}s", extent, what);
         const std::string remedy = fmt::format("choose one, 0 to {} ({})", extent - 1, option);
         if (!isVolume) refuse(root, fault, remedy);
         refuseChoice(root, fault, remedy, ChoiceNeeded::Among::Volumes,
                      static_cast<std::int64_t>(extent));
     }
-    return static_cast<std::uint64_t>(*asked);
+    return static_cast<std::uint64_t>(*wanted);
 }
 
 /// The dimension that is called x, y or z, or the place that it has by custom.
@@ -76,10 +76,10 @@ std::array<std::size_t, 3> spaceOf(const fs::path& root, const ZarrArray& array,
 }
 
 /// An index that was asked for in a dimension that the array has not: it has one thing of it.
-void requireAskedFor(const fs::path& root, const std::optional<std::int64_t>& asked, bool isThere,
-                     const char* what, const char* option) {
-    if (!asked || isThere || *asked == 0) return;
-    refuse(root, fmt::format("there is no {} {}: it has no such axis", what, *asked),
+void requireAxis(const fs::path& root, const std::optional<std::int64_t>& wanted, bool isThere,
+                 const char* what, const char* option) {
+    if (!wanted || isThere || *wanted == 0) return;
+    refuse(root, fmt::format("there is no {} {}: it has no such axis", what, *wanted),
            fmt::format("leave {} out", option));
 }
 
@@ -103,9 +103,9 @@ ZarrCut cutOf(const fs::path& root, const ZarrArray& array, const ZarrScene& sce
         hasOthers = hasOthers || !(isChannel || isTime);
         cut.fixed[n] = chosenIndex(root, axis, array.shape[n], options);
     }
-    requireAskedFor(root, options.channel, hasChannels, "channel", "--channel");
-    requireAskedFor(root, options.timePoint, hasTimes, "time point", "--time");
-    requireAskedFor(root, options.volumeIndex, hasOthers, "volume", "--volume-index");
+    requireAxis(root, options.channel, hasChannels, "channel", "--channel");
+    requireAxis(root, options.timePoint, hasTimes, "time point", "--time");
+    requireAxis(root, options.volumeIndex, hasOthers, "volume", "--volume-index");
     return cut;
 }
 

@@ -49,7 +49,8 @@ Json factsJson(const OptionFacts& facts, OptionKind kind, const OptionValue& sta
         if (!facts.rule.unit.empty()) json["unit"] = facts.rule.unit;
     }
     if (kind == OptionKind::Count) {
-        json["rule"] = countRule(0, mostOf(facts.rule));
+        json["rule"] = countRule(leastOf(facts.rule), mostOf(facts.rule));
+        if (facts.rule.least) json["least"] = leastOf(facts.rule);
         if (facts.rule.most) json["most"] = mostOf(facts.rule);
     }
     if (kind == OptionKind::Text) json["rule"] = facts.textRule;

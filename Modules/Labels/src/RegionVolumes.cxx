@@ -132,13 +132,13 @@ void restoreVolumes(const LabelGrid& grid, const DualComplex& complex,
     }
     measure(complex, polygons, sides, points, regions);
     // from here on only the walls of those that lack something
-    std::vector<std::uint8_t> isAsked(regions.size());
-    for (std::size_t r = 0; r < regions.size(); ++r) isAsked[r] = regions[r].lack() != 0 ? 1 : 0;
+    std::vector<std::uint8_t> isLacking(regions.size());
+    for (std::size_t r = 0; r < regions.size(); ++r) isLacking[r] = regions[r].lack() != 0 ? 1 : 0;
     std::size_t kept = 0;
     for (std::size_t n = 0; n < polygons.size(); ++n) {
         Sides own = sides[n];
         for (std::uint32_t& side : own) {
-            if (side != kNone && isAsked[side] == 0) side = kNone;
+            if (side != kNone && isLacking[side] == 0) side = kNone;
         }
         if (own == Sides{kNone, kNone}) continue;
         polygons[kept] = polygons[n];

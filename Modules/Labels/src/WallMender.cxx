@@ -11,7 +11,7 @@ namespace {
 
 using Id = WallMesh::Id;
 
-/// Where less than one in so many triangles is asked for, what is near them is looked up.
+/// Where less than one in so many triangles is wanted, what is near them is looked up.
 constexpr std::size_t kFew = 4;
 /// Where more of the walls than one in so many full triangles are to be proved, all are mapped.
 constexpr std::size_t kOfAll = 6;
@@ -73,26 +73,26 @@ BoundingBox WallMender::boxAround(Id triangle, double distanceMm) const {
 void WallMender::findCrossings() {
     isClear_.resize(mesh_.triangleCount(), 0);
     const auto wasThere = [&](Id t) { return t < isLast_.size() && isLast_[t] != 0; };
-    std::vector<Id> alive, asked;
-    const auto isAsked = [&](Id t) {
+    std::vector<Id> alive, wanted;
+    const auto isWanted = [&](Id t) {
         return !wasThere(t) || (mesh_.makerOf(t) != kNone && isClear_[t] == 0);
     };
     for (Id t = mesh_.firstTriangle(); t < mesh_.triangleCount(); ++t) {
         if (!mesh_.isTriangleAlive(t)) continue;
         alive.push_back(t);
-        if (isAsked(t)) asked.push_back(t);
+        if (isWanted(t)) wanted.push_back(t);
     }
-    if (asked.empty()) return;
-    if (kFew * asked.size() < alive.size()) {
-        const NearTriangles near(mesh_, asked);
+    if (wanted.empty()) return;
+    if (kFew * wanted.size() < alive.size()) {
+        const NearTriangles near(mesh_, wanted);
         std::erase_if(alive, [&](Id t) { return !near.hasOne(mesh_, boxAround(t, 0)); });
     }
-    std::vector<std::uint8_t> areAsked;
+    std::vector<std::uint8_t> areWanted;
     std::vector<Vec3> points;
     std::vector<TriangleView::Triangle> triangles;
     std::vector<Id> number(mesh_.pointCount(), kNone);
     for (const Id t : alive) {
-        areAsked.push_back(isAsked(t) ? 1 : 0);
+        areWanted.push_back(isWanted(t) ? 1 : 0);
         for (const Id v : mesh_.triangle(t).v) {
             if (number[v] != kNone) continue;
             number[v] = static_cast<Id>(points.size());
@@ -102,8 +102,8 @@ void WallMender::findCrossings() {
         triangles.push_back({number[a], number[b], number[c]});
     }
     const CrossingPairs crossing = findCrossingPairs(
-        {points, triangles}, [&](Id a, Id b) { return (areAsked[a] | areAsked[b]) != 0; });
-    for (const Id t : asked) isClear_[t] = 1;
+        {points, triangles}, [&](Id a, Id b) { return (areWanted[a] | areWanted[b]) != 0; });
+    for (const Id t : wanted) isClear_[t] = 1;
     const auto undo = [&](Id n) {
         const Id t = alive[n];
         isClear_[t] = 0;

@@ -58,12 +58,12 @@ public:
     std::int64_t mend() {
         findUses();
         std::vector<std::uint8_t> turns(cuts_.size(), 0);
-        std::vector<std::uint8_t> isAsked(complex_.groupCount, 1);
+        std::vector<std::uint8_t> isChanged(complex_.groupCount, 1);
         std::int64_t mended = 0;
         for (bool isDone = false; !isDone;) {
             std::vector<std::uint8_t> crosses(cuts_.size(), 0);
-            findCrossings(isAsked, crosses);
-            std::fill(isAsked.begin(), isAsked.end(), 0);
+            findCrossings(isChanged, crosses);
+            std::fill(isChanged.begin(), isChanged.end(), 0);
             isDone = true;
             for (std::size_t p = 0; p < cuts_.size(); ++p) {
                 if (crosses[p] == 0 || cuts_[p] == Cut::Fan) continue;
@@ -71,7 +71,7 @@ public:
                 mended += turns[p] == 0 ? 1 : 0;
                 turns[p] = 1;
                 isDone = false;
-                for (const VertexId v : complex_.cornersOf(complex_.polygons[p])) isAsked[v] = 1;
+                for (const VertexId v : complex_.cornersOf(complex_.polygons[p])) isChanged[v] = 1;
             }
         }
         freeMemory(useBegin_);
@@ -234,13 +234,13 @@ private:
 
     /// Triangles that cross lie in polygons with a vertex of a cell in common: what crosses in a
     /// cell is not a fan, so the cell is whole, and all that enters it has its vertex.
-    void findCrossings(const std::vector<std::uint8_t>& isAsked,
+    void findCrossings(const std::vector<std::uint8_t>& isChanged,
                        std::vector<std::uint8_t>& crosses) const {
         std::vector<std::vector<std::int64_t>> found((complex_.groupCount + kPiece - 1) / kPiece);
         parallelForPieces(complex_.groupCount, kPiece, [&](std::int64_t begin, std::int64_t end) {
             std::vector<Use> uses;
             for (std::int64_t v = begin; v < end; ++v) {
-                if (isAsked[v] == 0) continue;
+                if (isChanged[v] == 0) continue;
                 collect(v, uses);
                 if (isClear(v, uses)) continue;
                 for (std::size_t a = 0; a < uses.size(); ++a) {

@@ -308,13 +308,13 @@ std::optional<CrossingPairs> findByBoxes(const TriangleView& mesh, const Triangl
 
 }  // namespace
 
-CrossingPairs findCrossingPairs(const TriangleView& mesh, const IsMet& isAsked) {
+CrossingPairs findCrossingPairs(const TriangleView& mesh, const IsMet& isTested) {
     if (mesh.triangles.empty()) return {};
     TriangleTree tree;
     std::optional<PairTest> test;
     parallelInvoke([&] { tree = TriangleTree(mesh); }, [&] { test.emplace(mesh); });
     const IsMet isMet = [&](std::uint32_t a, std::uint32_t b) {
-        return (!isAsked || isAsked(a, b)) && test->cross(a, b);
+        return (!isTested || isTested(a, b)) && test->cross(a, b);
     };
     if (std::optional<CrossingPairs> found = findByBoxes(mesh, tree, isMet)) {
         return *std::move(found);

@@ -9,18 +9,6 @@ namespace adaptiso {
 
 namespace {
 
-void detachBadIndices(TriangleMesh& mesh) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    const auto count = static_cast<VertexId>(mesh.points.size());
-    mesh.points.push_back({kNan, kNan, kNan});
-    mesh.normals.clear();
-    for (Triangle& t : mesh.triangles) {
-        if (std::any_of(t.begin(), t.end(), [&](VertexId v) { return v < 0 || v >= count; })) {
-            t = {count, count, count};
-        }
-    }
-}
-
 std::int64_t countRepeatedIndices(const TriangleMesh& mesh) {
     return std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [](const Triangle& t) {
         return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
@@ -34,12 +22,27 @@ bool SurfaceFacts::isSoup() const {
            topology.count(TopologyDefect::BoundaryEdge) == 3 * topology.triangles;
 }
 
-SurfaceFacts measureSurface(TriangleMesh& mesh, const SizeLimits& sizeLimits,
+void replaceBadIndices(TriangleMesh& mesh) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const auto count = static_cast<VertexId>(mesh.points.size());
+    mesh.points.push_back({kNan, kNan, kNan});
+    mesh.normals.clear();
+    for (Triangle& t : mesh.triangles) {
+        if (std::any_of(t.begin(), t.end(), [&](VertexId v) { return v < 0 || v >= count; })) {
+            t = {count, count, count};
+        }
+    }
+}
+
+SurfaceFacts measureSurface(const TriangleMesh& given, const SizeLimits& sizeLimits,
                             std::int64_t maxPairs) {
     SurfaceFacts facts;
-    facts.topology = checkTopology(mesh);
-    facts.repeatedIndexTriangles = countRepeatedIndices(mesh);
-    if (facts.topology.count(TopologyDefect::IndexOutOfRange) > 0) detachBadIndices(mesh);
+    facts.topology = checkTopology(given);
+    facts.repeatedIndexTriangles = countRepeatedIndices(given);
+    TriangleMesh repaired;
+    const bool isBad = facts.topology.count(TopologyDefect::IndexOutOfRange) > 0;
+    if (isBad) replaceBadIndices(repaired = given);
+    const TriangleMesh& mesh = isBad ? repaired : given;
 
     double volume = 0;
     for (const SurfaceComponent& component : facts.topology.components) {

@@ -54,7 +54,7 @@ std::string measure(const TriangleMesh& mesh, const FinishOptions& options, Surf
 std::optional<TriangleMesh> fitToDigits(TriangleMesh& mesh, const FinishOptions& options,
                                         SurfaceRecord& record) {
     if (!options.digits) return std::nullopt;
-    const auto& [format, toFrame, askedBoundMm] = *options.digits;
+    const auto& [format, toFrame, requestedBoundMm] = *options.digits;
     if (format->precision == CoordinatePrecision::Float64) {
         record.roundingMm = 0;
         return std::nullopt;
@@ -65,8 +65,8 @@ std::optional<TriangleMesh> fitToDigits(TriangleMesh& mesh, const FinishOptions&
     const RoundingHarm harm = settleRounding(mesh, format->precision, toFrame);
     if (harm) throw TooFewDigits(textOf(harm, *format));
     record.roundingMm = harm.roundingMm;
-    if (askedBoundMm) {
-        const auto fault = roundingFault(harm.roundingMm, *askedBoundMm, *format);
+    if (requestedBoundMm) {
+        const auto fault = roundingFault(harm.roundingMm, *requestedBoundMm, *format);
         if (fault) throw TooFewDigits(*fault);
     }
     return asStored(mesh, format->precision, toFrame);
@@ -126,7 +126,8 @@ TriangleMesh extractPieces(const Extractor& extract, const ExtractionOptions& op
     return std::move(made.mesh);
 }
 
-std::optional<double> askedBoundMm(const ExtractionOptions& options, const ImageGeometry& volume) {
+std::optional<double> requestedBoundMm(const ExtractionOptions& options,
+                                       const ImageGeometry& volume) {
     const AdaptiveOptions& aims = options.adaptive;
     if (options.method != Method::Adaptive) return std::nullopt;
     if (aims.maxErrorMm || aims.maxTriangles || aims.reduction) return aims.maxErrorMm;

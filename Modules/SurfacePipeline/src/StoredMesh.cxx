@@ -312,12 +312,12 @@ std::optional<std::string> roundingFault(double roundingMm, double boundMm,
            " mm, more than the bound of " + formatShort(boundMm) + " mm" + kInstead;
 }
 
-std::optional<Warning> roundingWarning(const std::string& file, double boundMm, double askedMm,
+std::optional<Warning> roundingWarning(const std::string& file, double boundMm, double requestedMm,
                                        double roundingMm, const MeshFormat& format) {
     constexpr double kNoticed = 0.01;
-    if (!(boundMm > askedMm && roundingMm > kNoticed * askedMm)) return std::nullopt;
+    if (!(boundMm > requestedMm && roundingMm > kNoticed * requestedMm)) return std::nullopt;
     return Warning{"bound-exceeded",
-                   "lies within " + formatBound(boundMm) + " mm, not " + formatShort(askedMm) +
+                   "lies within " + formatBound(boundMm) + " mm, not " + formatShort(requestedMm) +
                        " mm: " + digitsOf(format) + "points move by up to " +
                        formatShort(roundingMm) + " mm" + kInstead,
                    file};

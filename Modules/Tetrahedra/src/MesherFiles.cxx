@@ -147,6 +147,18 @@ Vec3 pointBeside(const TriangleMesh& walls, const AabbTree& tree,
     throw InvalidInput("pointBeside: all triangles are flat, or touched by others");
 }
 
+const Options<MesherOptions>& elementOptions() {
+    static const Options<MesherOptions> kRows{option<&MesherOptions::elementMm>(
+        {.name = "element-size",
+         .key = "elementMm",
+         .valueName = "MM",
+         .help = "Longest edge of an equilateral tetrahedron; at the walls elements are as small "
+                 "as their triangles",
+         .standard = "5",
+         .rule = {.least = 0.5, .most = 50, .unit = "mm"}})};
+    return kRows;
+}
+
 std::string tetgenInput(const MesherInput& input, double elementMm) {
     std::string poly = text(std::ssize(input.points)) + " 3 0 0\n";
     std::int64_t number = 0;

@@ -40,8 +40,9 @@ std::optional<std::vector<std::int64_t>> crossingByBruteForce(
         for (int t = s + 1; t < count; ++t) {
             const std::optional<bool> cross = soup.cross(s, t);
             if (!cross) return {};
-            const bool isAsked = cells[s] == cells[t] || cells[s] == kNoCell || cells[t] == kNoCell;
-            if (*cross && isAsked) crossing.insert({s, t});
+            const bool isTested =
+                cells[s] == cells[t] || cells[s] == kNoCell || cells[t] == kNoCell;
+            if (*cross && isTested) crossing.insert({s, t});
         }
     }
     return std::vector<std::int64_t>(crossing.begin(), crossing.end());

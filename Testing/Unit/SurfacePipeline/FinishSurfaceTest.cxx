@@ -102,8 +102,9 @@ TEST(FinishSurface, FindsPiecesThatAreInsideOut) {
     EXPECT_EQ(sound.insideOutPieces, 0);
 }
 
-FileDigits stlDigits(std::optional<double> askedBoundMm) {
-    return {&findMeshFormat("a.stl"), lpsToFrame(CoordinateFrame::Ras, std::nullopt), askedBoundMm};
+FileDigits stlDigits(std::optional<double> requestedBoundMm) {
+    return {&findMeshFormat("a.stl"), lpsToFrame(CoordinateFrame::Ras, std::nullopt),
+            requestedBoundMm};
 }
 
 // at 4e5 mm single precision has steps of 1/32 mm
@@ -203,14 +204,14 @@ TEST(ExtractPieces, SpendsACountOnThePiecesThatAreKept) {
 TEST(AskedBound, IsTheDefaultUnlessACountIsAskedFor) {
     const ImageGeometry volume{{9, 9, 9}, {0, 0, 0}, {{Vec3{2, 0, 0}, {0, 2, 0}, {0, 0, 3}}}};
     ExtractionOptions options;
-    EXPECT_NEAR(*askedBoundMm(options, volume), 0.3, 1e-12);
+    EXPECT_NEAR(*requestedBoundMm(options, volume), 0.3, 1e-12);
     options.adaptive.maxTriangles = 5;
-    EXPECT_FALSE(askedBoundMm(options, volume));
+    EXPECT_FALSE(requestedBoundMm(options, volume));
     options.adaptive.maxErrorMm = 0.7;
-    EXPECT_EQ(askedBoundMm(options, volume), 0.7);
+    EXPECT_EQ(requestedBoundMm(options, volume), 0.7);
     options = {};
     options.method = Method::MarchingCubes;
-    EXPECT_FALSE(askedBoundMm(options, volume));
+    EXPECT_FALSE(requestedBoundMm(options, volume));
 }
 
 TEST(IsovalueFault, TellsValuesThatCutNothing) {

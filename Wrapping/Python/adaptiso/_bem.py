@@ -299,9 +299,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         min_gap: Union[float, Sequence[float]] = (2, 2, 1), conductivity: Sequence[float] = (0.3, 0.006, 0.3),
         electrodes: Union[Mapping[str, Point], Any] = None, electrodes_in: Optional[str] = None,
         montage: Optional[str] = None, landmarks: Union[Mapping[str, Point], str, None] = None,
-        sources: Optional[Sequence[Any]] = None, source_count: Optional[int] = None,
-        source_grid: Optional[float] = None, head_shape: bool = False,
-        tetrahedra: Optional[str] = None, element_size: float = 5, threads: int = 0,
+        sources: Optional[Sequence[Any]] = None, head_shape: bool = False,
+        tetrahedra: Optional[str] = None, threads: int = 0,
         progress: Optional[Progress] = None, **numbers: Unpack[BemOptions]) -> HeadModel:
     """Make the nested surfaces of a head model: inner skull, outer skull, outer skin, and with four
     layers the brain; electrodes on the skin.
@@ -377,18 +376,11 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         The cortex, as `surfaces`: ``["lh.white", "rh.white"]``: dipoles along its normals, none
         nearer to the innermost surface than one edge; `save` writes dipoles.txt (OpenMEEG) and
         sources-src.fif (MNE).
-    source_count : int, optional
-        With `sources`: of each of these surfaces, spread evenly. Default: 4098.
-    source_grid : float, optional
-        Instead of `sources`: dipoles along x, y and z at the points of a grid, mm apart, 1 to 50.
     head_shape : bool
         Keep the skin alone as well, as finely as it was found, for ``save(folder, fif=True)``.
     tetrahedra : {"tetgen", "gmsh"}, optional
         Fill the layers with tetrahedra by this program, which must be installed: ``report["tetrahedra"]``
         measures them, and `save` writes head.msh, head-4.1.msh, head.vtu, head.dgf and head.cond.
-    element_size : float
-        With `tetrahedra`: longest edge of an equilateral one, mm, 0.5 to 50; at the surfaces they are as
-        small as the triangles.
     threads, progress
         As for `surface`.
 
@@ -427,7 +419,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         ("head_mask", head_mask), ("pial", pial), ("volume", volume), ("tissues", tissues),
         ("input_coordinates", input_coordinates), ("electrodes", electrodes),
         ("electrodes_in", electrodes_in), ("montage", montage), ("landmarks", landmarks),
-        ("sources", sources), ("skull", numbers.get("skull")), ("source_count", source_count), ("source_grid", source_grid))
+        ("sources", sources), *numbers.items())
         if value is not None}
     options: Dict[str, Any] = {
         "layers": count("layers", layers),
@@ -438,18 +430,13 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         "min_gap": _numbers("min_gap", min_gap if isinstance(min_gap, (tuple, list)) else [min_gap]),
         "conductivity": _numbers("conductivity", conductivity),
         "head_shape": flag("head_shape", head_shape),
-        "source_count": (None if source_count is None
-                         else count("source_count", source_count, 1, 1000000)),
-        "source_grid": 0.0 if source_grid is None else number(
-            "source_grid", source_grid, "a number from 1 to 50, in mm", lambda mm: 1 <= mm <= 50),
         "input_coordinates": ([input_coordinates] if isinstance(input_coordinates, str)
                               else [frame for frame in input_coordinates or () if frame]),
         **checked("bem", numbers),
         **_electrodes(electrodes, electrodes_in, montage, landmarks),
     }
     mesher = None if tetrahedra is None else word("tetrahedra", tetrahedra, MESHERS)
-    element_mm = number("element_size", element_size, "a number from 0.5 to 50, in mm",
-                        lambda mm: 0.5 <= mm <= 50)
+    element_mm = options.pop("element_size", 5.0)
     if mesher and not shutil.which(mesher):
         raise Error(f"tetrahedra {mesher}: {mesher} is not installed; on Debian: apt install {mesher}")
     given_threads, callback = checked_threads(threads), checked_progress(progress)

@@ -55,6 +55,9 @@ class BemOptions(TypedDict, total=False):
     age: Optional[float]
     skull_hu: Optional[float]
     skin_hu: Optional[float]
+    source_count: Optional[int]
+    source_grid: Optional[float]
+    element_size: Optional[float]
 
 
 class ReadOptions(TypedDict, total=False):

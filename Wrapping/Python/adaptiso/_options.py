@@ -67,7 +67,7 @@ def _checked(name: str, value: Any, row: _Row) -> Any:
     if kind == "number":
         return number(name, value, row["rule"], lambda given: _allows(row, given))
     if kind == "count":
-        return count(name, value, most=row.get("most", LARGEST_COUNT))
+        return count(name, value, row.get("least", 0), row.get("most", LARGEST_COUNT))
     if kind == "choice":
         return word(name, value, row["words"])
     if kind == "flag":

@@ -18,7 +18,7 @@ namespace adaptiso::python {
 namespace {
 
 /// At least so long between two looks at Python: what looking costs is then nothing.
-constexpr double kToldEverySeconds = 0.02;
+constexpr double kProgressSeconds = 0.02;
 
 double now() {
     using Clock = std::chrono::steady_clock;
@@ -107,8 +107,8 @@ void Watcher::lookForSignals() {
 
 void Watcher::tell(std::string_view stage, double fraction) {
     const double time = now();
-    if (fraction < 1 && time - lastTold_ < kToldEverySeconds) return;
-    lastTold_ = time;
+    if (fraction < 1 && time - lastProgress_ < kProgressSeconds) return;
+    lastProgress_ = time;
     lookForSignals();
     if (callback_.is_none()) return;
     const Locked locked;

@@ -61,7 +61,7 @@ private:
 
     py::object callback_;
     std::optional<py::error_already_set> error_;
-    double lastTold_ = -1;  ///< seconds of a steady clock
+    double lastProgress_ = -1;  ///< seconds of a steady clock
 };
 
 /// For atexit: ends the calls of all other threads, which the end of the process would take away

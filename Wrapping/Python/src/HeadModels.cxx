@@ -55,6 +55,7 @@ struct HeadSources {
     Meshes surfaces;                ///< inside out, in one frame
     std::vector<BemInput> inputs;   ///< one for each of them
     std::vector<Warning> warnings;  ///< of reading
+    GivenElectrodes electrodes{};
 };
 
 /// A head model, or the reason for its absence.
@@ -163,7 +164,8 @@ std::vector<TriangleMesh> cortexOf(const HeadSources::Meshes& surfaces,
     return meshes;
 }
 
-HeadBoundaries boundariesOf(const HeadSources& sources, const BoundaryOptions& options) {
+HeadBoundaries boundariesOf(const HeadSources& sources, const BemModel& model,
+                            const BemHooks& hooks) {
     BemImages images;
     for (const auto& image : sources.images) images.main.push_back(image->view);
     images.tissues = sources.tissues;
@@ -178,7 +180,7 @@ HeadBoundaries boundariesOf(const HeadSources& sources, const BoundaryOptions& o
     if (!images.main.empty()) {
         images.brain.pial = cortexOf(sources.pial, images.main.front().geometry());
     }
-    return findBoundaries(sources.source, images, options, argumentName);
+    return findBoundaries(model, images, hooks, argumentName);
 }
 
 /// The surfaces in LPS mm; of loose tkRAS in the LPS of a stand-in, as the program has it.
@@ -200,11 +202,7 @@ std::vector<TriangleMesh> readyMeshes(const HeadSources& sources, BemModel& mode
 std::vector<TriangleMesh> firstSurfaces(const HeadSources& sources, BemModel& model,
                                         const BemHooks& hooks) {
     if (sources.source != BemSource::Surfaces) {
-        BoundaryOptions boundaries = model.options.boundaries;
-        boundaries.progress = hooks.progress;
-        HeadBoundaries found;
-        hooks.stage("boundaries", [&] { found = boundariesOf(sources, boundaries); });
-        return extractSurfaces(found, model, hooks);
+        return extractSurfaces(boundariesOf(sources, model, hooks), model, hooks);
     }
     try {
         return mendSurfaces(readyMeshes(sources, model), model, hooks);
@@ -214,12 +212,11 @@ std::vector<TriangleMesh> firstSurfaces(const HeadSources& sources, BemModel& mo
 }
 
 void putElectrodes(BemModel& model, const BemHooks& hooks) {
-    const ElectrodeOptions& wanted = model.options.electrodes;
-    if (!model.hasModel() || !wanted.areWanted()) return;
+    if (!model.hasModel() || !model.wantsElectrodes()) return;
     try {
         placeElectrodes(model, hooks);
     } catch (const InvalidInput& error) {
-        throw InvalidInput((wanted.file ? "electrodes: " : "montage: ") +
+        throw InvalidInput((model.givenElectrodes.file ? "electrodes: " : "montage: ") +
                            std::string(error.what()));
     }
 }
@@ -229,7 +226,7 @@ void putSources(BemModel& model, const BemHooks& hooks) {
     try {
         placeSources(model, hooks);
     } catch (const InvalidInput& error) {
-        throw InvalidInput((model.options.sources.gridMm > 0 ? "source_grid: " : "sources: ") +
+        throw InvalidInput((model.options.sources.gridMm ? "source_grid: " : "sources: ") +
                            std::string(error.what()));
     }
 }
@@ -245,6 +242,7 @@ std::shared_ptr<HeadModelData> HeadModelData::make(const HeadSources& sources,
     model.source = sources.source;
     model.inputs = sources.inputs;
     model.warnings = sources.warnings;
+    model.givenElectrodes = sources.electrodes;
     data->threads_ = threads;
     data->isLoose_ = areLoose(sources);
     if (!sources.images.empty()) {
@@ -263,7 +261,7 @@ std::shared_ptr<HeadModelData> HeadModelData::make(const HeadSources& sources,
         std::vector<TriangleMesh> dense = firstSurfaces(sources, model, hooks);
         const auto& image = model.image ? model.image : model.tkRasVolume;
         model.pial = cortexOf(sources.pial, image);
-        model.options.sources.surfaces = cortexOf(sources.cortex, image);
+        model.cortex = cortexOf(sources.cortex, image);
         finishBemModel(std::move(dense), model, hooks);
         putElectrodes(model, hooks);
         putSources(model, hooks);
@@ -290,13 +288,13 @@ std::vector<std::shared_ptr<MeshData>> HeadModelData::surfaces() const {
 
 std::string HeadModelData::check(int threads) const {
     std::vector<TriangleMesh> meshes;
-    std::vector<const TriangleMesh*> asked;
+    std::vector<const TriangleMesh*> surfaces;
     std::vector<std::string> names;
     for (const TriangleMesh& mesh : model_.meshes) {
         meshes.push_back(toFrame(mesh, CoordinateFrame::Ras));
     }
     for (std::size_t n = 0; n < meshes.size(); ++n) {
-        asked.push_back(&meshes[n]);
+        surfaces.push_back(&meshes[n]);
         names.push_back(bemSurfaceName(n, model_.meshes.size()));
     }
     CheckRules rules;
@@ -304,7 +302,7 @@ std::string HeadModelData::check(int threads) const {
     rules.profile = Profile::Bem;
     std::string text;
     runUnlocked(threads, [&] {
-        text = dumped(nestedJson(asked, names, model_.options.minGapsMm(), rules));
+        text = dumped(nestedJson(surfaces, names, model_.options.minGapsMm(), rules));
     });
     return text;
 }
@@ -419,13 +417,28 @@ PointFile pointsOf(const py::object& electrodes) {
     return file;
 }
 
-ElectrodeOptions electrodesOf(const py::dict& options) {
-    ElectrodeOptions wanted;
+GivenElectrodes electrodesOf(const py::dict& options) {
+    GivenElectrodes given;
     const py::object electrodes = options["electrodes"];
     if (!electrodes.is_none()) {
-        wanted.file = pointsOf(electrodes);
-        wanted.fileName = take<std::string>(options, "electrodes_name");
+        given.file = pointsOf(electrodes);
+        given.fileName = take<std::string>(options, "electrodes_name");
     }
+    if (const auto places = take<std::optional<std::array<Place, 3>>>(options, "landmarks")) {
+        Landmarks landmarks;
+        landmarks.nasionMm = toLps((*places)[0]);
+        landmarks.leftEarMm = toLps((*places)[1]);
+        landmarks.rightEarMm = toLps((*places)[2]);
+        if (const auto inion = take<std::optional<Place>>(options, "inion")) {
+            landmarks.inionMm = toLps(*inion);
+        }
+        given.landmarks = landmarks;
+    }
+    return given;
+}
+
+ElectrodeOptions electrodeOptionsOf(const py::dict& options) {
+    ElectrodeOptions wanted;
     wanted.frame = frameOf(take<std::optional<std::string>>(options, "electrodes_in"));
     if (const auto system = take<std::optional<std::string>>(options, "montage")) {
         wanted.positions = choose<PositionSystem>("montage", *system,
@@ -434,20 +447,9 @@ ElectrodeOptions electrodesOf(const py::dict& options) {
                                                    {"10-05", PositionSystem::TenFive}});
     }
     wanted.wantsLandmarks = take<bool>(options, "guesses_landmarks");
-    if (const auto given = take<std::optional<std::array<Place, 3>>>(options, "landmarks")) {
-        Landmarks landmarks;
-        landmarks.nasionMm = toLps((*given)[0]);
-        landmarks.leftEarMm = toLps((*given)[1]);
-        landmarks.rightEarMm = toLps((*given)[2]);
-        if (const auto inion = take<std::optional<Place>>(options, "inion")) {
-            landmarks.inionMm = toLps(*inion);
-        }
-        wanted.landmarks = landmarks;
-    }
     return wanted;
 }
 
-/// Without electrodes.
 BemModelOptions modelOptionsOf(const py::dict& options) {
     BemModelOptions model;
     model.boundaries.innerSkullOnly = take<bool>(options, "meg");
@@ -462,12 +464,10 @@ BemModelOptions modelOptionsOf(const py::dict& options) {
     takeNumbers(options, "conductivity", kConductivityRule,
                 [&](const auto& sigmas) { return setConductivities(model, sigmas); });
     model.vertices = take<std::vector<std::int64_t>>(options, "vertices");
-    if (const auto count = take<std::optional<std::int64_t>>(options, "source_count")) {
-        model.sources.count = *count;
-    }
-    model.sources.gridMm = take<double>(options, "source_grid");
+    python::take(sourceOptions(), model.sources, options);
     model.wantsHeadShape = take<bool>(options, "head_shape");
     model.inputCoordinates = take<std::vector<std::string>>(options, "input_coordinates");
+    model.electrodes = electrodeOptionsOf(options);
     return model;
 }
 
@@ -603,8 +603,9 @@ void declareHeadModels(py::module_& module) {
         "make_bem",
         [](const py::dict& source, const py::dict& options, int threads, py::object progress) {
             BemModelOptions model = modelOptionsOf(options);
-            model.electrodes = electrodesOf(options);
-            return HeadModelData::make(sourcesOf(source), model, threads, std::move(progress));
+            HeadSources sources = sourcesOf(source);
+            sources.electrodes = electrodesOf(options);
+            return HeadModelData::make(sources, model, threads, std::move(progress));
         },
         py::arg("source"), py::arg("options"), py::arg("threads"), py::arg("progress"));
     module.def("check_bem", &checkBem, py::arg("given"), py::arg("tissues"), py::arg("options"),

@@ -146,7 +146,7 @@ std::shared_ptr<MeshData> MeshData::fromLps(TriangleMesh mesh, std::optional<Ima
     data->history_ = std::move(history);
     if (data->history_) {
         data->errorBoundMm_ = data->history_->record.statistics.errorBoundMm;
-        data->askedBoundMm_ = askedBoundMm(data->history_->extraction, *data->image_);
+        data->requestedBoundMm_ = requestedBoundMm(data->history_->extraction, *data->image_);
     }
     return data;
 }
@@ -251,11 +251,11 @@ std::string MeshData::writeTo(const std::filesystem::path& path,
             settleRounding(lps, format.precision, lpsToFrame(options.frame, options.volume));
         if (!history_) harm.mergedPoints = 0;  // adaptiso-simplify looks at triangles alone
         if (harm) throw InvalidInput(path.string() + ": " + textOf(harm, format));
-        if (askedBoundMm_) {
-            const auto fault = roundingFault(harm.roundingMm, *askedBoundMm_, format);
+        if (requestedBoundMm_) {
+            const auto fault = roundingFault(harm.roundingMm, *requestedBoundMm_, format);
             if (fault) throw InvalidInput(path.string() + ": " + *fault);
             warning = roundingWarning({}, errorBoundMm_.value_or(0) + harm.roundingMm,
-                                      *askedBoundMm_, harm.roundingMm, format);
+                                      *requestedBoundMm_, harm.roundingMm, format);
         }
     }
     writeMesh(lps, path, options);

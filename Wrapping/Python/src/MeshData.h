@@ -97,7 +97,7 @@ public:
     void setReport(std::string report) { report_ = std::move(report); }
 
     /// The bound that the mesh was asked to keep, mm; none: none, or not known.
-    void setAskedBoundMm(std::optional<double> bound) { askedBoundMm_ = bound; }
+    void setRequestedBoundMm(std::optional<double> bound) { requestedBoundMm_ = bound; }
 
     /// Writes a file, whole or not at all, in `frame` or in the format's own. Points of an unknown
     /// frame are written as they are, and the file says no frame.
@@ -120,7 +120,7 @@ private:
     CoordinateFrame frame_ = CoordinateFrame::Ras;
     bool isFrameKnown_ = true;
     std::optional<ImageGeometry> image_;
-    std::optional<double> errorBoundMm_, askedBoundMm_;
+    std::optional<double> errorBoundMm_, requestedBoundMm_;
     std::optional<SurfaceHistory> history_;
     std::string report_;
 };

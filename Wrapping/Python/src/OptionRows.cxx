@@ -11,6 +11,7 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/Json/OptionsJson.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
+#include "adaptiso/Tetrahedra/MesherFiles.h"
 
 namespace adaptiso::python {
 namespace {
@@ -44,7 +45,8 @@ std::string optionRows() {
          {"simplify",
           joined({describe(aimOptions(AimedSurface::Mesh)), describe(borderOptions())})},
          {"labels", describe(aimOptions(AimedSurface::Walls))},
-         {"bem", describe(boundaryOptions())},
+         {"bem", joined({describe(boundaryOptions()), describe(sourceOptions()),
+                         describe(elementOptions())})},
          {"read", describe(readOptions())},
          {"giant", without({"resample-slices"}, describe(readOptions()))}});
 }

@@ -42,7 +42,7 @@ py::tuple simplifyMesh(const MeshData& data, SimplifyOptions options, int thread
     if (data.image()) made->setImage(*data.image());
     made->setFrameKnown(data.isFrameKnown());
     made->setErrorBoundMm(result.statistics.errorBoundMm);
-    made->setAskedBoundMm(options.maxErrorMm);
+    made->setRequestedBoundMm(options.maxErrorMm);
     py::dict found = toDict(result.statistics);
     std::vector<Warning> warnings;
     if (options.maxErrorMm && !data.mesh().points.empty()) {

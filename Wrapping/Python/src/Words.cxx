@@ -28,10 +28,8 @@ std::optional<CoordinateFrame> frameOf(const std::optional<std::string>& word) {
 }
 
 Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules) {
-    TriangleMesh asked = mesh;  // what measures may change is not the user's
-    freeMemory(asked.normals);
-    SurfaceFacts facts = measureSurface(asked, sizeLimitsOf(rules.profileInUse()), rules.maxPairs);
-    if (rules.measuresWalls) measureWallsOf(asked, rules.wallLimitMm(), facts);
+    SurfaceFacts facts = measureSurface(mesh, sizeLimitsOf(rules.profileInUse()), rules.maxPairs);
+    if (rules.measuresWalls) measureWallsOf(mesh, rules.wallLimitMm(), facts);
     Json json = verdictJson(judgeSurface(facts, rules));
     json.update(factsJson(facts));
     return json;
@@ -48,13 +46,13 @@ Json nestedJson(std::span<const TriangleMesh* const> meshes, std::span<const std
         surfaces.push_back(std::move(surface));
     }
     for (std::size_t n = 0; n + 1 < meshes.size(); ++n) {
-        CheckRules asked = rules;
-        if (!gapsMm.empty()) asked.minGapMm = gapsMm[n];
+        CheckRules pairRules = rules;
+        if (!gapsMm.empty()) pairRules.minGapMm = gapsMm[n];
         const NestingReport report =
             checkNesting(*meshes[n], *meshes[n + 1], {.maxPairs = rules.maxPairs});
         Json pair{{"inner", names[n]}, {"outer", names[n + 1]}};
         pair.update(
-            nestingJson(report, judgeNesting(report, names[n], names[n + 1], {}, asked), {}));
+            nestingJson(report, judgeNesting(report, names[n], names[n + 1], {}, pairRules), {}));
         hasPassed = hasPassed && pair["passed"].get<bool>();
         pairs.push_back(std::move(pair));
     }

@@ -31,7 +31,8 @@ inline constexpr std::int64_t kAnyCount = std::int64_t{1} << 53;
 /// "a whole number from 0 to 3", "a whole number, 0 or more"
 std::string countRule(std::int64_t least, std::int64_t most);
 
-/// The largest count that a rule allows.
+/// The smallest and the largest count that a rule allows.
+std::int64_t leastOf(const NumberRule& rule);
 std::int64_t mostOf(const NumberRule& rule);
 
 /// Facts about one option, from which the command line, --help, reports and Python's arguments are
@@ -43,7 +44,7 @@ struct OptionFacts {
     std::string_view valueName{};  ///< in --help: "MM"
     std::string_view help{};       ///< one sentence or two, without the value's name and default
     std::string_view standard{};   ///< the default in words, where --help states it
-    NumberRule rule{};             ///< of a number or a count; a count is 0 or more in any case
+    NumberRule rule{};             ///< of a number, or of a count, which is 0 or more
     /// Words of a choice, in the order of --help. For an enumeration: in the order of its values.
     std::span<const std::string_view> words{};
     /// Check of a text, and its rule in words. Empty: any text.

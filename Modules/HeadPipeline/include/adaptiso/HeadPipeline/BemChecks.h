@@ -12,33 +12,35 @@
 
 namespace adaptiso {
 
-/// adaptiso-check's question of one surface or pair, its answer, and where to look.
+/// A check of one surface or pair of a model.
 struct ModelCheck {
     std::string subject;  ///< "inner_skull", "inner_skull in outer_skull"
     Check check;
-    Vec3 pointMm;  ///< in the frame of the surfaces asked; meaningful when the check failed
+    Vec3 pointMm;  ///< where to look when it failed, in the frame of the surfaces
 };
 
-/// All that `adaptiso-check --nested --profile bem --min-gap` asks of the surfaces of a model.
+/// Results of the checks of `adaptiso-check --nested --profile bem --min-gap`.
 struct ModelChecks {
     std::vector<SurfaceFacts> facts;     ///< one a surface
     std::vector<NestingReport> nesting;  ///< one a pair
     std::vector<ModelCheck> checks;
 };
 
-/// \param surfaces  from inside out, mm, in any frame; findings tell points in it
+/// Checks the surfaces of a head model.
+/// \param surfaces  from inside out, mm; findings give points in their frame
 /// \param gapsMm    least gap of each pair
-ModelChecks askOfModel(std::span<const TriangleMesh> surfaces, std::span<const double> gapsMm);
+ModelChecks checkHeadSurfaces(std::span<const TriangleMesh> surfaces,
+                              std::span<const double> gapsMm);
 
-/// The same of one surface that is yet to be remeshed or nested.
-std::vector<Check> askOfSurface(const TriangleMesh& surface);
+/// Checks one surface that is yet to be remeshed or nested.
+std::vector<Check> checkHeadSurface(const TriangleMesh& surface);
 
-/// Checks every promise about the model's meshes, by adaptiso-check's own code (stage "check");
-/// what is not kept becomes a finding. Fills what the model tells of surfaces and gaps.
+/// Checks the model's meshes (stage "check"): a failed check becomes a finding. Fills the model's
+/// checks, gaps and the measures of its surfaces.
 void checkModel(BemModel& model, const BemHooks& hooks);
 
-/// Asks what is usual of head models (judgePlausibility; stage "check"); nothing fails by it. Fills
-/// the model's plausibility, with places told in scanner RAS.
-void askWhatIsUsual(BemModel& model, const BemHooks& hooks);
+/// Fills the model's plausibility by judgePlausibility() (stage "check"), places in scanner RAS.
+/// Nothing fails by it.
+void assessPlausibility(BemModel& model, const BemHooks& hooks);
 
 }  // namespace adaptiso

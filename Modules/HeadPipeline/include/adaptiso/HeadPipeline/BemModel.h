@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adaptiso/Core/ImageGeometry.h"
@@ -31,23 +32,22 @@ namespace adaptiso {
 
 /// Electrodes to put on the skin of a model.
 struct ElectrodeOptions {
-    std::optional<PointFile> file;         ///< electrodes as read
-    std::string fileName;                  ///< without folders
     std::optional<CoordinateFrame> frame;  ///< of the file; else what it says, or by its landmarks
     std::optional<PositionSystem> positions;  ///< computed from landmarks, instead of a file's
-    std::optional<Landmarks> landmarks;       ///< given
     bool wantsLandmarks = false;              ///< even without electrodes
+};
 
-    bool areWanted() const { return file || positions || landmarks || wantsLandmarks; }
+/// Electrodes and landmarks that were given.
+struct GivenElectrodes {
+    std::optional<PointFile> file;       ///< as read
+    std::string fileName;                ///< without folders
+    std::optional<Landmarks> landmarks;  ///< LPS mm
 };
 
 /// Which places of dipoles to write for a lead field.
 struct SourceOptions {
-    std::vector<TriangleMesh> surfaces{};  ///< the cortex (lh.white, rh.white), LPS mm; two at most
-    std::int64_t count = 4098;             ///< sources of each surface, at most
-    double gridMm = 0;                     ///< or a grid; 0: none
-
-    bool areWanted() const { return !surfaces.empty() || gridMm > 0; }
+    std::int64_t count = 4098;       ///< sources of each surface of the cortex, at most
+    std::optional<double> gridMm{};  ///< or a grid
 };
 
 /// Options of a head model, whatever it is made from.
@@ -112,10 +112,13 @@ struct BemSurface {
 
 /// A promise about the model, kept or not.
 struct BemCheck {
-    std::string name;  ///< "inner_skull: one closed surface of genus 0"
+    std::string subject;  ///< "inner_skull", "inner_skull in outer_skull", "tetrahedra", a file
+    std::string name;     ///< "one closed surface of genus 0"
     bool isPassed = false;
     std::string detail;
     std::optional<Vec3> pointMm;  ///< LPS, where it is not kept
+
+    std::string fullName() const { return subject + ": " + name; }
 };
 
 /// The skin alone, for coregistration.
@@ -183,13 +186,28 @@ struct BemModel {
     std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
     std::optional<BemSources> sources{};      ///< if wanted, and there is a model
     std::vector<TriangleMesh> pial{};         ///< LPS mm, as given: to lie within the inner skull
+    GivenElectrodes givenElectrodes{};
+    std::vector<TriangleMesh>
+        cortex{};  ///< for sources, until they are placed; LPS mm, two at most
     std::vector<NestedGap> gaps;
     std::vector<BemCheck> checks;
-    std::vector<ToldNote> plausibility;  ///< unusual properties of the head
-    std::vector<Finding> findings;       ///< why there is no model; points in LPS mm
-    std::vector<Finding> doubts{};       ///< as HeadBoundaries has them
+    std::vector<ReportedNote> plausibility;  ///< unusual properties of the head
+    std::vector<Finding> findings;           ///< why there is no model; points in LPS mm
+    std::vector<Finding> doubts{};           ///< as HeadBoundaries has them
 
     bool hasModel() const { return findings.empty(); }
+    /// A failed check is a finding too. \pre one that failed has a point
+    void addCheck(BemCheck check) {
+        if (!check.isPassed) {
+            findings.push_back({check.fullName() + ": " + check.detail, *check.pointMm});
+        }
+        checks.push_back(std::move(check));
+    }
+    bool wantsElectrodes() const {
+        const ElectrodeOptions& wanted = options.electrodes;
+        return givenElectrodes.file || givenElectrodes.landmarks || wanted.positions ||
+               wanted.wantsLandmarks;
+    }
 
     /// Why there is no model and where, in one line; the point in scanner RAS, as viewers show it.
     /// \pre !hasModel()

@@ -15,6 +15,7 @@ namespace adaptiso {
 
 /// Numbers that shape a head model, by the report's order of keys.
 const Options<BoundaryOptions>& boundaryOptions();
+const Options<SourceOptions>& sourceOptions();
 
 inline constexpr std::int64_t kLeastBemVertices = 42, kMostBemVertices = 200'000;
 
@@ -57,9 +58,9 @@ struct BemImages {
     std::optional<VolumeView> headMask;
 };
 
-/// Finds the head's boundaries. \pre the source is no surfaces
+/// Finds the boundaries of the model's head (stage "boundaries"). \pre the source is no surfaces
 /// \throws InvalidInput  as the functions of HeadBoundaries.h, naming the input
-HeadBoundaries findBoundaries(BemSource source, const BemImages& images,
-                              const BoundaryOptions& options, const BemNaming& naming);
+HeadBoundaries findBoundaries(const BemModel& model, const BemImages& images, const BemHooks& hooks,
+                              const BemNaming& naming);
 
 }  // namespace adaptiso

@@ -14,7 +14,7 @@
 namespace adaptiso {
 
 /// A plausibility note, formatted for output. It never fails a run.
-struct ToldNote {
+struct ReportedNote {
     HeadNote note;        ///< places in LPS mm
     std::string subject;  ///< "inner_skull", "inner_skull in outer_skull"
     /// Frame of the reported places; empty if the file does not say it.
@@ -24,19 +24,19 @@ struct ToldNote {
 };
 
 /// How many are noted.
-std::int64_t notedCount(std::span<const ToldNote> notes);
+std::int64_t notedCount(std::span<const ReportedNote> notes);
 
 /// " at 1.0, 2.0, 3.0" of the first place, or nothing.
-std::string placeText(const ToldNote& note);
+std::string placeText(const ReportedNote& note);
 
 /// Lines of all notes, in the columns of the checks.
-void printNotes(std::ostream& out, std::span<const ToldNote> notes);
+void printNotes(std::ostream& out, std::span<const ReportedNote> notes);
 
-/// List of {name, of, outcome, finding, pointsIn, pointsMm}, points as told.
-Json notesJson(std::span<const ToldNote> notes);
+/// List of {name, of, outcome, finding, pointsIn, pointsMm}.
+Json notesJson(std::span<const ReportedNote> notes);
 
-/// Adds what is asked to the checks of a page, and the places of what is noted to its spots. A
-/// finding that a warning holds is not repeated.
-void addNotes(std::span<const ToldNote> notes, Report& report);
+/// Adds the notes to a page's checks, and the places of those that are noted to its spots. A
+/// finding that a warning of the run holds is not repeated.
+void addNotes(std::span<const ReportedNote> notes, Report& report);
 
 }  // namespace adaptiso

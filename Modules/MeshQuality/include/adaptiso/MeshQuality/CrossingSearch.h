@@ -86,11 +86,11 @@ struct CrossingPairs {
 /// Where hundreds of triangles are near each one, and planes do not tell them apart, no more are
 /// tested than a budget in proportion to T: 256 near ones, 8 that cross, and more where T is below
 /// a few thousand. Such triangles are reported as undecided.
-/// \param isAsked  isAsked(a, b): the pair is looked at; empty: all are
+/// \param isTested  isTested(a, b): the pair is looked at; empty: all are
 /// \pre the corners of triangles are finite
 /// Cost: O(T log T), in parallel; 40 bytes a triangle, and those of ClearFans or TriangleGroups.
 CrossingPairs findCrossingPairs(
     const TriangleView& mesh,
-    const std::function<bool(std::uint32_t, std::uint32_t)>& isAsked = {});
+    const std::function<bool(std::uint32_t, std::uint32_t)>& isTested = {});
 
 }  // namespace adaptiso

@@ -43,10 +43,13 @@ struct SurfaceFacts {
     bool isSoup() const;
 };
 
-/// Gives triangles that name missing points a new point instead, added to `mesh` at the end,
-/// that is not finite: no number of a triangle changes, and later measures leave them out.
+/// Gives triangles that name missing points a new point instead, added at the end, that is not
+/// finite: no number of a triangle changes, and measures leave them out.
+void replaceBadIndices(TriangleMesh& mesh);
+
+/// Triangles that name missing points are counted, and left out of all other measures.
 /// \param maxPairs  of triangles that cross, to list
-SurfaceFacts measureSurface(TriangleMesh& mesh, const SizeLimits& sizeLimits,
+SurfaceFacts measureSurface(const TriangleMesh& mesh, const SizeLimits& sizeLimits,
                             std::int64_t maxPairs);
 
 /// Measures facts.walls, if the surface is closed, manifold, and faces outward.

@@ -70,7 +70,8 @@ TriangleMesh extractPieces(const Extractor& extract, const ExtractionOptions& op
 
 /// The bound that a surface is to keep: the one asked for, or the default; none with a count alone
 /// and of other methods.
-std::optional<double> askedBoundMm(const ExtractionOptions& options, const ImageGeometry& volume);
+std::optional<double> requestedBoundMm(const ExtractionOptions& options,
+                                       const ImageGeometry& volume);
 
 /// Calls the work that it is given, which is the stage of this name: "pieces", "check",
 /// "crossings". For those who show progress or measure time.
@@ -80,7 +81,7 @@ using StageRunner = std::function<void(std::string_view stage, const std::functi
 struct FileDigits {
     const MeshFormat* format = nullptr;
     AffineTransform toFrame;  ///< LPS mm to the frame of the file
-    std::optional<double> askedBoundMm{};
+    std::optional<double> requestedBoundMm{};
 };
 
 struct FinishOptions {

@@ -53,8 +53,8 @@ std::optional<std::string> roundingFault(double roundingMm, double boundMm,
 
 /// "bound-exceeded", where rounding takes a file beyond the bound that was asked for by more than a
 /// hundredth: "lies within 0.0569 mm, not 0.05 mm: STL (binary) keeps 24 bits ...". None elsewhere.
-/// \param boundMm  that is proved, with the rounding \param askedMm  > 0
-std::optional<Warning> roundingWarning(const std::string& file, double boundMm, double askedMm,
+/// \param boundMm  that is proved, with the rounding \param requestedMm  > 0
+std::optional<Warning> roundingWarning(const std::string& file, double boundMm, double requestedMm,
                                        double roundingMm, const MeshFormat& format);
 
 /// "STL (binary) rounds coordinates to 24 bits, by which 2 pairs of triangles cross; ...".

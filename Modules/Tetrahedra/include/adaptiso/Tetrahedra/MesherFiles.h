@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Tetrahedra/Tetrahedra.h"
 
@@ -19,8 +20,10 @@ struct MesherOptions {
     std::string mesher;    ///< "tetgen" or "gmsh"; empty: they are not
     double elementMm = 5;  ///< longest edge of an equilateral tetrahedron
 
-    bool isAsked() const { return !mesher.empty(); }
+    bool isRequested() const { return !mesher.empty(); }
 };
+/// --element-size
+const Options<MesherOptions>& elementOptions();
 
 /// A space to fill: all of a region that hangs together.
 struct MesherVolume {
