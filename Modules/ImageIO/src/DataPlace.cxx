@@ -50,13 +50,29 @@ std::string amountOf(std::uint64_t extra, const ImageExtent& extent) {
                                      : "more than a slice, row or column too few leaves over";
 }
 
-void checkBytesBefore(const fs::path& file, std::uint64_t byteCount, const ImageExtent& extent) {
-    if (byteCount < extent.whole) return;
-    refuse(file,
+/// Where samples are the last bytes: a header of any length may be before them in a file of their
+/// own, but no part of the image.
+void checkBytesBefore(const DataPlace& place, std::uint64_t byteCount, const ImageExtent& extent) {
+    if (byteCount == 0) return;
+    if (!place.isDetached()) {
+        refuse(place.file,
+               fmt::format("holds {} bytes between its header and the image, which are the file's "
+                           "last bytes ({} -1)",
+                           byteCount, place.skipName),
+               fmt::format("leave {} out, or remove those bytes", place.skipName));
+    }
+    constexpr std::uint64_t kBlock = 512;  // headers are shorter, or a few of these
+    const bool mayBeHeader = byteCount < kBlock || byteCount % kBlock == 0;
+    const bool isRows = byteCount % extent.row == 0 || byteCount % extent.column == 0;
+    const bool isMore =
+        byteCount >= extent.whole || byteCount % extent.piece == 0 || (isRows && !mayBeHeader);
+    if (!isMore) return;
+    refuse(place.file,
            fmt::format("holds {} bytes before the image that its header describes, which is the "
-                       "file's end: as much as another image",
-                       byteCount),
-           kRemedy);
+                       "file's end: {}",
+                       byteCount, amountOf(byteCount, extent)),
+           fmt::format("{}; if they are a header before it, set {} to {}", kRemedy, place.skipName,
+                       byteCount));
 }
 
 /// The kind of image file that begins so: "a NIfTI file"; empty for others.
@@ -271,7 +287,7 @@ ByteSource openData(const DataPlace& place, std::uint64_t byteCount, const Image
         source.requireRoomFor(byteCount);
         const std::uint64_t all = reopen().readTail(byteCount + extent.whole).byteCount;
         at = all - std::min(all, byteCount);  // reading reports the missing bytes
-        checkBytesBefore(place.file, at, extent);
+        checkBytesBefore(place, at, extent);
     }
     const std::uint64_t before = isDeflated ? 0 : streamAt - place.begin;
     if (isChecked) {

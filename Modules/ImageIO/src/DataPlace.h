@@ -69,8 +69,10 @@ struct DataPlace {
 ///
 /// A data file that is an image file itself must be entered where its own samples begin, or whole
 /// slices behind: elsewhere its header would be read as voxels.
-/// \throws FileError  the samples begin elsewhere; so much is before a file's last bytes that it is
-///                    another image; less than `byteCount` is there
+/// \throws FileError  the samples begin elsewhere; what is before a file's last bytes is more of
+/// the
+///                    image, or anything where the header is in that file too; less than
+///                    `byteCount` is there
 ByteSource openData(const DataPlace& place, std::uint64_t byteCount, const ImageExtent& extent);
 
 /// A volume, and what is behind it in its file.

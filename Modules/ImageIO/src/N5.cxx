@@ -71,7 +71,7 @@ private:
     std::size_t at_ = 0;
 };
 
-/// Sides of a block in Zarr's order, between what of it lies in the array and a whole one.
+/// Sides of a block in Zarr's order: of each what lies in the array, or a whole one.
 ZarrIndex sidesOf(BlockHeader& header, const ZarrArray& array, const ZarrIndex& first,
                   const fs::path& file) {
     const std::uint64_t mode = header.take(2);
@@ -86,7 +86,7 @@ ZarrIndex sidesOf(BlockHeader& header, const ZarrArray& array, const ZarrIndex& 
     bool isGood = rank == array.rank();
     for (std::size_t n = 0; isGood && n < sides.size(); ++n) {
         const std::uint64_t rest = array.shape[n] - std::min(array.shape[n], first[n]);
-        isGood = sides[n] >= std::min(rest, array.chunk[n]) && sides[n] <= array.chunk[n];
+        isGood = sides[n] == std::min(rest, array.chunk[n]) || sides[n] == array.chunk[n];
     }
     if (!isGood) {
         refuse(file, "is damaged: its header and the metadata do not agree on the block's size",

@@ -45,6 +45,7 @@ struct ZarrRegion {
 struct ZarrPart {
     Volume volume;  ///< with the part's own place
     std::int64_t chunks = 0, missing = 0;
+    bool hasMoreBeyond = false;  ///< of the whole image: its chunks hold more, beyond its shape
 };
 
 /// Reads the chunks that a part touches, each once. \pre it lies in the image, and is not empty

@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -193,6 +193,7 @@ public:
           touched_(array_, cut_, region),
           out_(out),
           sampleBytes_(bytesPerPixel(array_.type)),
+          isWhole_(region.size == image.geometry.size),
           strides_(array_.rank()) {
         std::uint64_t stride = 1;
         for (std::size_t n = array_.rank(); n-- > 0;) {
@@ -205,6 +206,8 @@ public:
     const std::array<std::uint64_t, 3>& files() const { return touched_.counts(); }
     std::int64_t missing() const { return missing_; }
     std::int64_t chunks() const { return chunks_; }
+    /// Chunks hold more than one value beyond the array's shape; false for a part of the image.
+    bool hasMoreBeyond() const { return hasMoreBeyond_; }
 
     /// \throws FileError  a chunk that is there can't be read, is damaged, too short or too long
     void addFile(std::uint64_t number) {
@@ -254,7 +257,41 @@ private:
         if (array_.encoding.byteOrder != std::endian::native) {
             swapBytes(bytes.data(), bytes.size(), sampleBytes_);
         }
+        lookBeyond(bytes.data(), first);
         place(bytes.data(), first, array_.chunk);
+    }
+
+    /// Writers pad chunks at the image's end with one value.
+    void lookBeyond(const std::byte* samples, const ZarrIndex& first) {
+        bool isAtEnd = false;
+        for (std::size_t n = 0; n < array_.rank(); ++n) {
+            isAtEnd = isAtEnd || first[n] + array_.chunk[n] > array_.shape[n];
+        }
+        if (!isAtEnd || !isWhole_ || hasMoreBeyond_) return;
+        const std::size_t row = array_.encoding.order.back();  // its samples are side by side
+        const std::uint64_t length = array_.chunk[row],
+                            inside = array_.shape[row] - std::min(array_.shape[row], first[row]);
+        const std::byte* one = nullptr;
+        ZarrIndex at(array_.rank(), 0);
+        for (std::uint64_t rows = array_.chunkSamples() / length; rows > 0; --rows) {
+            bool isBeyond = false;
+            const std::byte* from = samples;
+            for (std::size_t n = 0; n < array_.rank(); ++n) {
+                isBeyond = isBeyond || first[n] + at[n] >= array_.shape[n];
+                from += at[n] * strides_[n] * sampleBytes_;
+            }
+            for (std::uint64_t x = isBeyond ? 0 : std::min(inside, length); x < length; ++x) {
+                if (one == nullptr) one = from + x * sampleBytes_;
+                if (std::memcmp(one, from + x * sampleBytes_, sampleBytes_) == 0) continue;
+                hasMoreBeyond_ = true;
+                return;
+            }
+            for (std::size_t n = array_.rank(); n-- > 0;) {
+                if (n == row) continue;
+                if (++at[n] < array_.chunk[n]) break;
+                at[n] = 0;
+            }
+        }
     }
 
     /// Inner chunks in the order of their numbers, the last dimension the fastest.
@@ -412,8 +449,10 @@ private:
     const TouchedFiles touched_;
     std::byte* const out_;
     const std::size_t sampleBytes_;
+    const bool isWhole_;
     ZarrIndex strides_;  ///< of each dimension in a chunk as it is stored, in samples
     std::atomic<std::int64_t> missing_{0}, chunks_{0};
+    std::atomic<bool> hasMoreBeyond_{false};
 };
 
 /// \param counts  along each axis
@@ -553,18 +592,20 @@ private:
     std::int64_t left_ = std::int64_t{1} << 17;  ///< names to look at
 };
 
+/// "beyond the shape that its metadata state (5 x 6 x 7)"
+std::string beyondShape(const ZarrArray& array) {
+    return fmt::format("beyond the shape that its metadata state ({})",
+                       fmt::join(array.shape, " x "));
+}
+
 /// \throws FileError  the store holds more of the image than the shape in its metadata
 void requireNoChunksBeyond(const ZarrStore& store, const ZarrArray& array) {
     const fs::path beyond = ChunksBeyond(store, array).find();
     if (beyond.empty()) return;
-    std::string shape;
-    for (const std::uint64_t size : array.shape) {
-        shape += (shape.empty() ? "" : " x ") + std::to_string(size);
-    }
-    refuse(store.root() / array.path,
-           fmt::format("holds chunks beyond the shape that its metadata state ({}): {}", shape,
-                       printable(beyond.generic_string())),
-           "correct the shape, or remove the chunks that are no part of the image");
+    refuse(
+        store.root() / array.path,
+        fmt::format("holds chunks {}: {}", beyondShape(array), printable(beyond.generic_string())),
+        "correct the shape, or remove the chunks that are no part of the image");
 }
 
 }  // namespace
@@ -613,7 +654,7 @@ ZarrPart readZarrPart(const ZarrImage& image, const ZarrRegion& region) {
                     "use a machine with more memory");
     }
     return {makeVolume(std::move(samples), image.array.type, geometry), assembly.chunks(),
-            assembly.missing()};
+            assembly.missing(), assembly.hasMoreBeyond()};
 }
 
 void forEachZarrFile(const ZarrImage& image, const ZarrRegion& region,
@@ -637,6 +678,11 @@ ReadVolume readZarr(const fs::path& folder, const ReadOptions& options) {
         }
         image.scene.warnings.push_back(
             {"missing-chunks", text + "; the fill value stands for them"});
+    }
+    if (part.hasMoreBeyond) {
+        image.scene.warnings.push_back(
+            {"trailing-bytes", fmt::format("its chunks hold more than padding {}; it was left out",
+                                           beyondShape(image.array))});
     }
     return {std::move(part.volume), image.format(), std::move(image.scene.warnings)};
 }

@@ -319,6 +319,38 @@ TEST(MoreThanTheHeaderSays, ALargerDataFileIsFineWhereTheHeaderPointsIntoIt) {
     writeFile(folder / "x.raw", std::string(300, 'h') + data());
     expectRead(nrrd("byte skip: -1\n"));
     expectRead(meta("-1"));
+    // nor slices that the header misses
+    for (const std::size_t slices : {1, 3}) {
+        writeFile(folder / "x.raw", data().substr(0, slices * kSliceBytes) + data());
+        const std::string fault = std::to_string(slices * kSliceBytes) +
+                                  " bytes before the image that its header describes";
+        refused(nrrd("byte skip: -1\n"), fault);
+        refused(meta("-1"), fault);
+    }
+}
+
+TEST(MoreThanTheHeaderSays, NothingLiesBetweenAHeaderAndItsSamplesInOneFile) {
+    const TempFolder folder;
+    const auto nrrd = [&](const std::string& encoding, const std::string& bytes) {
+        return writeFile(folder / "x.nrrd",
+                         nrrdHeader("encoding: " + encoding + "\nbyte skip: -1\n") + bytes);
+    };
+    const auto meta = [&](const std::string& bytes) {
+        return writeFile(folder / "x.mha", metaHeader("HeaderSize = -1\n", "LOCAL") + bytes);
+    };
+    expectRead(nrrd("raw", data()));
+    expectRead(nrrd("gzip", gzipped(data())));
+    expectRead(meta(data()));
+    for (const std::size_t count : {std::size_t{5}, kSliceBytes, kSliceBytes + 5}) {
+        const std::string more(count, 'h');
+        const std::string fault = std::to_string(count) + " bytes between its header and the image";
+        for (const std::string& bytes : {more + data(), data() + more}) {
+            expectRefusal(nrrd("raw", bytes), fault);
+            expectRefusal(nrrd("gzip", gzipped(bytes)), fault);
+            expectRefusal(meta(bytes), fault);
+        }
+        expectRefusal(nrrd("gzip", gzipped(data()) + gzipped(more)), fault);
+    }
 }
 
 std::string pairHeader(float dataOffset) {

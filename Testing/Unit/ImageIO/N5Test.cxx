@@ -122,6 +122,21 @@ TEST_F(N5Test, BlocksBeyondTheDimensionsAreMoreOfTheImage) {
     expectRefused("holds chunks beyond the shape");
 }
 
+TEST_F(N5Test, BlocksOfAnotherSizeThanTheDimensionsSayAreRefused) {
+    const std::pair<const char*, const char*> others[] = {
+        {"[7", "[6"}, {"[7", "[8"}, {"6, ", "5, "}, {"6, ", "7, "}};
+    for (const auto& [from, to] : others) {
+        for (const auto& [type, pack] : {std::pair{"raw", Pack(same)}, {"gzip", Pack(gzipped)}}) {
+            SCOPED_TRACE(std::string(to) + type);
+            Text text = metadata(R"({"type": ")" + Text(type) + "\"}");
+            text.replace(text.find(from), std::string(from).size(), to);
+            put("attributes.json", text);
+            putBlocks("", pack);
+            expectRefused("its header and the metadata do not agree on the block's size");
+        }
+    }
+}
+
 TEST_F(N5Test, BeforeVersion2CompressionWasAName) {
     put("attributes.json", R"({"dimensions": [7, 6, 5], "blockSize": [4, 4, 4],
                                "dataType": "int16", "compressionType": "gzip"})");

@@ -2,7 +2,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -80,6 +82,49 @@ TEST_F(ZarrRefusalTest, ChunksBeyondTheShapeAreMoreOfTheImage) {
                                   "configuration": {"separator": "."}})"));
     putChunks("c.", ".", same);
     expectBeyond("c.", ".");
+}
+
+/// Specification 2 leaves open what chunks hold there, so it is a warning; one value again and
+/// again is what writers put there.
+TEST_F(ZarrRefusalTest, ValuesBeyondTheShapeAreNamed) {
+    const auto mentionsBeyond = [&] {
+        for (const Warning& warning : readVolume(root_).warnings) {
+            if (warning.code != "trailing-bytes") continue;
+            EXPECT_NE(warning.text.find("beyond the shape that its metadata state (5 x 6 x 7)"),
+                      std::string::npos)
+                << warning.text;
+            return true;
+        }
+        return false;
+    };
+    const std::pair<std::string, std::function<Text(const Text&)>> codecs[] = {
+        {"null", same}, {R"({"id": "zlib"})", zlibbed}};
+    for (const auto& [codec, pack] : codecs) {
+        for (const bool isF : {false, true}) {
+            put(".zarray", metadata2(codec, "", "<i2", isF ? "F" : "C"));
+            putChunks("", ".", pack, isF);
+            EXPECT_FALSE(mentionsBeyond());  // 7 again and again
+            // the last sample of the last chunk lies beyond along all axes, that of the second one
+            // along z
+            for (const auto& [key, at] :
+                 {std::pair{"1.1.1", std::array{1, 1, 1}}, {"1.0.0", std::array{0, 0, 1}}}) {
+                const Text chunk = chunkAt(at[0], at[1], at[2], isF);
+                Text other = chunk;
+                other[other.size() - 2] = 8;
+                put(key, pack(other));
+                EXPECT_TRUE(mentionsBeyond()) << key;
+                put(key, pack(chunk));
+            }
+        }
+    }
+    fs::remove_all(root_);
+    put("zarr.json", metadata3(R"([{"name": "bytes", "configuration": {"endian": "little"}}])"));
+    putChunks("c/", "/", same);
+    EXPECT_FALSE(mentionsBeyond());
+    Text other = chunkAt(1, 1, 1);
+    other.back() = 8;
+    put("c/1/1/1", other);
+    EXPECT_TRUE(mentionsBeyond());
 }
 
 TEST_F(ZarrRefusalTest, LinksLeadNowhereButIntoTheDatasetAndItsAnnex) {
