@@ -176,6 +176,13 @@ std::vector<const PointArray*> heldArrays(const MeshFile& input, SimplifyRun& ru
                                     "; left out: " + others,
                                 baseName(run.output.file)});
     }
+    if (!input.arraysLeftOut.empty()) {
+        run.warnings.push_back({"array-left-out",
+                                "values of triangles, text and arrays of more than nine "
+                                "components are not carried over; left out: " +
+                                    joined(input.arraysLeftOut),
+                                baseName(run.input.file)});
+    }
     return held;
 }
 

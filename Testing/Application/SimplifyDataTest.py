@@ -264,6 +264,18 @@ class InTheFile(SimplifyTest):
                 self.assertEqual(again["input"]["triangles"], first["output"]["triangles"])
                 self.assertLessEqual(again["output"]["triangles"], first["output"]["triangles"])
 
+    def test_values_of_triangles_are_left_out_with_a_warning(self):
+        (self.folder / "colored.ply").write_text(
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 4\nproperty list uchar int vertex_indices\n"
+            "property uchar red\nproperty int part\nend_header\n"
+            "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+            "3 0 2 1 255 1\n3 0 1 3 255 1\n3 1 2 3 255 1\n3 0 3 2 255 1\n")
+        report = self.simplify("colored.ply", "--max-error", "0.1", "-o", "out.ply")
+        self.assertEqual([(w["code"], w["file"]) for w in report["warnings"]],
+                         [("array-left-out", "colored.ply")])
+        self.assertTrue(report["warnings"][0]["text"].endswith("left out: red, part"))
+
     def test_a_format_without_values_is_a_warning(self):
         report = self.simplify("in.ply", "--max-error", "0.2", "-o", "out.stl")
         self.assertEqual(lines(report["warnings"]), ["out.stl: STL (binary) holds no values at points; "

@@ -197,6 +197,13 @@ class Soundness(SimplifyTest):
             self.assertEqual((defects["boundaryEdge"], defects["inconsistentlyOrientedEdge"],
                               defects["duplicateTriangle"]), (0, 0, 1), name)
 
+    def test_triangles_between_two_points_of_one_place_leave_a_flap(self):
+        self.write("needle.off", ([(0, 0, 0), (0, 0, 0), (1, 0, 0), (0, 1, 0)],
+                                  [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]))
+        report = self.simplify("needle.off", "--max-error", "0.1", "-o", "out.off")
+        self.assertEqual(report["output"]["triangles"], 2)
+        self.assertTrue(report["output"]["closed"])
+
     def test_a_triangle_without_area_that_lies_alone_is_dropped(self):
         points, triangles = icosphere(10, 2)
         n = len(points)

@@ -10,7 +10,8 @@ namespace {
 
 /// A line for each code, in alphabetical order; a test compares it with Documentation/Warnings.md.
 constexpr WarningCode kCodes[] = {
-    {"array-left-out", "the output's format cannot hold values at points that the input has"},
+    {"array-left-out",
+     "values of the input are not in the output: of triangles, or what its format cannot hold"},
     {"attributes-left-out", "colours or numbers of an STL file's triangles were left out", true},
     {"blended-labels", "an image that may hold labels was smoothed or resampled with blending"},
     {"bound-exceeded", "the format's digits take the file beyond the bound that was asked for"},

@@ -91,7 +91,7 @@ using Metadata = std::map<std::string, std::string, std::less<>>;
 struct GiftiSurface {
     GiftiArray points, triangles;
     Metadata metadata;  ///< of the file and of the points
-    std::string otherIntent;
+    std::vector<std::string> otherIntents;
 };
 
 GiftiSurface surfaceOf(GiftiFile&& file) {
@@ -102,7 +102,7 @@ GiftiSurface surfaceOf(GiftiFile&& file) {
                                  : intent == "NIFTI_INTENT_TRIANGLE" ? &surface.triangles
                                                                      : nullptr;
         if (kept == nullptr) {
-            surface.otherIntent = intent;
+            surface.otherIntents.push_back(storedName(intent));
             continue;
         }
         if (!kept->attributes.empty()) {
@@ -292,13 +292,13 @@ MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options) {
     GiftiSurface found = surfaceOf(std::move(content));
     if (found.points.attributes.empty() || found.triangles.attributes.empty()) {
         const bool hasPoints = !found.points.attributes.empty();
-        const bool isEmpty = found.otherIntent.empty();
-        unsupported("it holds " + std::string(hasPoints ? "points but no triangles"
-                                              : isEmpty ? "no data"
-                                                        : "values at points (" +
-                                                              storedName(found.otherIntent) +
-                                                              "), no surface"),
-                    "give the surface with its points and triangles (.surf.gii)");
+        const bool isEmpty = found.otherIntents.empty();
+        unsupported(
+            "it holds " + std::string(hasPoints ? "points but no triangles"
+                                      : isEmpty ? "no data"
+                                                : "values at points (" + found.otherIntents.back() +
+                                                      "), no surface"),
+            "give the surface with its points and triangles (.surf.gii)");
     }
     loadExternal(found.points, options.folder);
     loadExternal(found.triangles, options.folder);
@@ -317,6 +317,7 @@ MeshFile decodeGifti(std::string_view bytes, const MeshReadOptions& options) {
         file.mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
     }
     place(found, options, file);
+    if (options.keepsPointArrays) file.arraysLeftOut = std::move(found.otherIntents);
     file.warnings = std::move(unpacking.warnings);
     return file;
 }

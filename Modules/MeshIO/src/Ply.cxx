@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -96,6 +97,12 @@ std::string_view nextHeaderLine(ByteSource& source, bool isCarriageReturnAlone) 
     return line;
 }
 
+/// Refuses what a reader would take for the other of two.
+void requireNew(std::set<std::string>& names, const std::string& name, std::string_view what) {
+    if (names.insert(name).second) return;
+    malformed("its header has the " + std::string(what) + " " + printable(name) + " twice");
+}
+
 Header parseHeader(ByteSource& source, const MeshReadOptions& options) {
     Header header{{}, {}, FrameMarks(options)};
     const std::string_view bytes = source.rest();
@@ -106,11 +113,13 @@ Header parseHeader(ByteSource& source, const MeshReadOptions& options) {
         unsupported("its first line is not 'ply'", "it is no PLY file: get it again");
     }
     bool hasFormat = false;
+    std::set<std::string> elements, properties;
     while (!source.atEnd()) {
         const std::string_view text = nextHeaderLine(source, isOldMac);
         ByteSource line(text);
         const std::string kind = lowerCase(line.word());
         if (kind == "format") {
+            if (hasFormat) malformed("its header says twice how it is encoded");
             header.encoding = parseEncoding(line.requireWord("the encoding"));
             hasFormat = true;
         } else if (kind == "comment") {
@@ -119,10 +128,14 @@ Header parseHeader(ByteSource& source, const MeshReadOptions& options) {
             Element element;
             element.name = line.requireWord("an element's name");
             element.count = line.integerWord("an element's count");
+            requireNew(elements, element.name, "element");
+            properties.clear();
             header.elements.push_back(std::move(element));
         } else if (kind == "property") {
             if (header.elements.empty()) malformed("a property stands before any element");
-            header.elements.back().properties.push_back(parseProperty(line));
+            Property property = parseProperty(line);
+            requireNew(properties, property.name, "property");
+            header.elements.back().properties.push_back(std::move(property));
         } else if (kind == "end_header") {
             if (!hasFormat) malformed("its header does not say how it is encoded");
             return header;
@@ -320,6 +333,15 @@ void readVertices(const Element& element, bool keepsArrays, ValueReader& values,
     file.mesh.points.reserve(element.count);
     for (std::int64_t i = 0; i < element.count; ++i) row.read(values, file.mesh);
     for (PointArray& array : row.take()) file.pointArrays.push_back(std::move(array));
+    for (const Property& property : element.properties) {
+        if (!keepsArrays || !property.isList) continue;
+        file.arraysLeftOut.push_back(storedName(property.name));
+    }
+}
+
+bool isCorners(const Property& property) {
+    return property.isList &&
+           (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
 void readFaces(const Element& element, ValueReader& values, TriangleMesh& mesh) {
@@ -328,9 +350,7 @@ void readFaces(const Element& element, ValueReader& values, TriangleMesh& mesh) 
         bool found = false;
         values.beginRow();
         for (const Property& property : element.properties) {
-            const bool isVertices = property.isList && (property.name == "vertex_indices" ||
-                                                        property.name == "vertex_index");
-            if (!isVertices) {
+            if (!isCorners(property) || found) {
                 skipProperty(property, values);
                 continue;
             }
@@ -485,6 +505,10 @@ MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
             readVertices(element, options.keepsPointArrays, values, file);
         } else if (element.name == "face") {
             readFaces(element, values, file.mesh);
+            for (const Property& property : element.properties) {
+                if (!options.keepsPointArrays || isCorners(property)) continue;
+                file.arraysLeftOut.push_back(storedName(property.name));
+            }
         } else {
             if (element.name == "tristrips") refuseStrips();
             for (std::int64_t i = 0; i < element.count; ++i) {

@@ -262,6 +262,7 @@ private:
     /// Colours, as bytes; in text as parts of 1. With a fourth component, which is passed over.
     void decodeColors(std::string_view name, std::int64_t components) {
         if (!isKept(tuples_, components) || components < 3) {
+            passOver(name);
             skipNumbers(tuples_, components, PixelType::UInt8);
             return;
         }
@@ -301,9 +302,15 @@ private:
                components >= 1 && components <= kMostComponents;
     }
 
+    void passOver(std::string_view name) {
+        if (!keepsArrays_ || !(isPointData_ || isCellData_)) return;
+        file_.arraysLeftOut.push_back(arrayName(name));
+    }
+
     void decodeArray(std::string_view name, std::int64_t tuples, std::int64_t components,
                      PixelType type) {
         if (!isKept(tuples, components)) {
+            passOver(name);
             skipNumbers(tuples, components, type);
             return;
         }
@@ -336,6 +343,7 @@ private:
             const std::string_view type = array.requireWord("a type");
             if (lowerCase(type) == "string") {
                 const std::string text = takeStrings(tuples, components);
+                passOver(name);
                 if (!marks_.frame()) addField(name, text, fieldMarks_);
             } else {
                 if ((isPointData_ || isCellData_) && tuples > 0) requireOneEach(tuples);

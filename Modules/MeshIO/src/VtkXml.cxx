@@ -6,6 +6,7 @@
 // or '<' in one breaks the file.
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "Bytes.h"
@@ -17,6 +18,12 @@
 
 namespace adaptiso::meshio {
 namespace {
+
+constexpr std::int64_t kMostComponents = 9;  ///< of a tensor
+
+std::int64_t componentsOf(const XmlAttributes& attributes) {
+    return toInteger(attributeOr(attributes, "NumberOfComponents", "1"), "a number of components");
+}
 
 struct DataArray {
     XmlAttributes attributes;  ///< empty: the file has no such array
@@ -51,6 +58,8 @@ public:
     XmlAttributes file, piece, appended;
     DataArray points, normals, connectivity, offsets, frame, slicerSpace;
     std::deque<DataArray> values;  ///< at points, where they are kept
+    std::deque<DataArray> others;  ///< that are not: of points and of cells
+    std::vector<bool> areOfCells;  ///< of `others`
 
 private:
     void startFile(const std::string& element, const XmlAttributes& attributes) {
@@ -82,9 +91,11 @@ private:
         if (parent == "Polys" && name == "offsets") array_ = &offsets;
         if (parent == "PointData" && !normalsName_.empty() && name == normalsName_) {
             array_ = &normals;
-        } else if (parent == "PointData" && keepsArrays_ &&
-                   attributeOr(attributes, "type", "String") != "String") {
+        } else if (parent == "PointData" && keepsArrays_ && mayBeKept(attributes)) {
             array_ = &values.emplace_back();
+        } else if (parent == "PointData" || parent == "CellData") {
+            array_ = &others.emplace_back();
+            areOfCells.push_back(parent == "CellData");
         }
         if (parent == "FieldData" && attributeOr(attributes, "type", "") == "String") {
             if (name == kFrameFieldName) array_ = &frame;
@@ -95,6 +106,11 @@ private:
         arrayDepth_ = path_.size() + 1;
     }
 
+    static bool mayBeKept(const XmlAttributes& attributes) {
+        return attributeOr(attributes, "type", "String") != "String" &&
+               componentsOf(attributes) <= kMostComponents;
+    }
+
     bool keepsArrays_;
     std::vector<std::string> path_;  ///< the elements around this place
     std::string normalsName_;
@@ -102,13 +118,19 @@ private:
     std::size_t arrayDepth_ = 0;
 };
 
-/// "Float64", "UInt8"
-PixelType typeOf(const XmlAttributes& attributes, std::string_view what) {
-    const std::string& name = requireAttribute(attributes, "type");
+/// "Float64", "UInt8"; empty for strings and bits
+std::optional<PixelType> numberTypeOf(const XmlAttributes& attributes) {
+    const std::string name = lowerCase(attributeOr(attributes, "type", ""));
     for (int n = 0; n <= static_cast<int>(PixelType::Float64); ++n) {
         const auto type = static_cast<PixelType>(n);
-        if (lowerCase(name) == toString(type)) return type;
+        if (name == toString(type)) return type;
     }
+    return std::nullopt;
+}
+
+PixelType typeOf(const XmlAttributes& attributes, std::string_view what) {
+    const std::string& name = requireAttribute(attributes, "type");
+    if (const auto type = numberTypeOf(attributes)) return *type;
     unsupported("its " + std::string(what) + " have the type " + printable(name),
                 "save them as Float64 or Int64");
 }
@@ -149,6 +171,22 @@ public:
         return withPixelType(type, [&]<class Stored>(Stored) {
             return binaryNumbers<Stored, T>(array, count, what);
         });
+    }
+
+    /// Checks that an array which is not read holds `count` numbers, by what it says of itself.
+    void requireCount(const DataArray& array, std::int64_t count) const {
+        const auto type = numberTypeOf(array.attributes);
+        if (!type || !array.attributes.contains("format")) return;
+        std::uint64_t found = 0;
+        if (requireAttribute(array.attributes, "format") == "ascii") {
+            ByteSource words(array.text);
+            while (!words.word().empty()) ++found;
+        } else {
+            found = countedBytes(array) / bytesPerPixel(*type);
+        }
+        if (found == static_cast<std::uint64_t>(count)) return;
+        damaged("its array " + printable(attributeOr(array.attributes, "Name", "")) + " holds " +
+                std::to_string(found) + " values, must hold " + std::to_string(count));
     }
 
     /// The first string of a string array: characters up to a zero byte.
@@ -213,22 +251,37 @@ private:
     /// The unpacked bytes of an array; damage, and nothing unpacked, where they are compressed
     /// and claim to be more than `most`.
     std::string blockBytes(const DataArray& array, std::size_t most, std::string_view what) {
-        std::string_view data = trimmed(array.text);
-        bool isRaw = false;
         const bool isAppended = requireAttribute(array.attributes, "format") == "appended";
-        if (isAppended) {
-            const std::int64_t offset =
-                toInteger(requireAttribute(array.attributes, "offset"), "an offset");
-            requireRoom("bytes before its " + std::string(what), offset, 1, appendedData_.size());
-            data = appendedData_.substr(offset);
-            isRaw = appendedIsRaw_;
-        }
+        const bool isRaw = isAppended && appendedIsRaw_;
+        std::string_view data = storedData(array, what);
         std::string bytes =
             isCompressed_ ? unpackedBlocks(data, isRaw, most) : plainBlock(data, isRaw);
         if (isAppended) {
             appendedEnd_ = std::max(appendedEnd_, appendedData_.size() - data.size());
         }
         return bytes;
+    }
+
+    /// From where its data begin.
+    std::string_view storedData(const DataArray& array, std::string_view what) const {
+        if (requireAttribute(array.attributes, "format") != "appended") return trimmed(array.text);
+        const std::int64_t offset =
+            toInteger(requireAttribute(array.attributes, "offset"), "an offset");
+        requireRoom("bytes before its " + std::string(what), offset, 1, appendedData_.size());
+        return appendedData_.substr(offset);
+    }
+
+    /// Bytes of an array by the words before its data.
+    std::uint64_t countedBytes(const DataArray& array) const {
+        const bool isRaw =
+            appendedIsRaw_ && requireAttribute(array.attributes, "format") == "appended";
+        std::string_view data = storedData(array, "values"), ahead = data;
+        const std::uint64_t first = headerWord(takeBytes(ahead, wordBytes_, isRaw), 0);
+        if (!isCompressed_ || first == 0) return first;
+        const std::string header = takeBytes(data, 3 * wordBytes_, isRaw);
+        const std::uint64_t last = headerWord(header, 2);
+        return last == 0 ? first * headerWord(header, 1)
+                         : (first - 1) * headerWord(header, 1) + last;
     }
 
     /// The first `count` bytes that `data` stands for; moves `data` behind them.
@@ -348,14 +401,12 @@ void requireComponents(const DataArray& stored, std::string_view what) {
               " components (NumberOfComponents), must have 3");
 }
 
-/// \return  nothing for an array of more components than a tensor has
+/// \return  nothing for an array without components
 std::optional<PointArray> decodePointArray(const DataArray& stored, std::int64_t points,
                                            ArrayReader& reader) {
-    constexpr std::int64_t kMostComponents = 9;
     const XmlAttributes& attributes = stored.attributes;
-    const std::int64_t components =
-        toInteger(attributeOr(attributes, "NumberOfComponents", "1"), "a number of components");
-    if (components < 1 || components > kMostComponents) return std::nullopt;
+    const std::int64_t components = componentsOf(attributes);
+    if (components < 1) return std::nullopt;
     const PixelType type = typeOf(attributes, "values");
     std::string name = storedName(attributeOr(attributes, "Name", ""));
     if (isReal(type)) {
@@ -504,6 +555,28 @@ void encodeVtkXml(const MeshRecord& record, ByteSink& sink) {
     VtpEncoder().encode(record, sink);
 }
 
+/// Arrays that are not read are as many as the points or the cells too.
+void passOver(const VtpHandler& handler, const ArrayReader& reader, bool keepsArrays,
+              MeshFile& file) {
+    constexpr std::size_t kMostCells = std::size_t{1} << 60, kMostValues = std::size_t{1} << 62;
+    std::int64_t cells = 0;
+    for (const char* const kind : {"NumberOfVerts", "NumberOfLines", "NumberOfPolys"}) {
+        const std::int64_t count = toInteger(attributeOr(handler.piece, kind, "0"), kind);
+        requireRoom(kind, count, 1, kMostCells);
+        cells += count;
+    }
+    const std::int64_t points = pieceCount(handler, "NumberOfPoints");
+    for (std::size_t n = 0; n < handler.others.size(); ++n) {
+        const DataArray& array = handler.others[n];
+        const std::int64_t components = componentsOf(array.attributes),
+                           each = handler.areOfCells[n] ? cells : points;
+        requireRoom("components", components, std::max<std::int64_t>(each, 1), kMostValues);
+        reader.requireCount(array, components * each);
+        if (!keepsArrays) continue;
+        file.arraysLeftOut.push_back(storedName(attributeOr(array.attributes, "Name", "")));
+    }
+}
+
 MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
     VtpHandler handler(options.keepsPointArrays);
     const std::size_t end = parseXml(bytes, handler);
@@ -534,6 +607,7 @@ MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
             file.pointArrays.push_back(std::move(*array));
         }
     }
+    passOver(handler, reader, options.keepsPointArrays, file);
     decodeTriangles(handler, reader, file.mesh);
     FrameMarks marks(options);
     for (const DataArray* const field : {&handler.frame, &handler.slicerSpace}) {

@@ -279,6 +279,98 @@ TEST(Counts, OfVtkCellDataAreThoseOfItsCells) {
     refused(four + scalars(5), "values for 5 cells, and 4 cells");
 }
 
+/// A triangle, a line and arrays in text.
+std::string vtpWith(const std::string& pointValues, const std::string& cellValues) {
+    const auto array = [](const std::string& attributes, const std::string& values) {
+        return "<DataArray format=\"ascii\" " + attributes + ">" + values + "</DataArray>";
+    };
+    const std::string real = "type=\"Float32\" ", whole = "type=\"Int64\" ";
+    return "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\" NumberOfLines=\"1\" "
+           "NumberOfPolys=\"1\"><PointData>" +
+           array(real + "Name=\"p\"", pointValues) + "</PointData><CellData>" +
+           array(real + "Name=\"c\" NumberOfComponents=\"2\"", cellValues) + "</CellData><Points>" +
+           array(real + "NumberOfComponents=\"3\"", "0 0 0 1 0 0 0 1 0") + "</Points><Lines>" +
+           array(whole + "Name=\"connectivity\"", "0 1") + array(whole + "Name=\"offsets\"", "2") +
+           "</Lines><Polys>" + array(whole + "Name=\"connectivity\"", "0 1 2") +
+           array(whole + "Name=\"offsets\"", "3") + "</Polys></Piece></PolyData></VTKFile>";
+}
+
+TEST(Counts, OfPlyEachElementAndPropertyIsThereOnce) {
+    const std::string
+        vertices = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n",
+        face = "element face 1\n", corners = "property list uchar int vertex_indices\n",
+        points = "0 0 0\n1 0 0\n0 1 0\n", triangle = "3 0 1 2\n";
+    const auto ply = [&](const std::string& header, const std::string& rows) {
+        return "ply\nformat ascii 1.0\n" + header + "end_header\n" + rows;
+    };
+    const std::string good = vertices + face + corners;
+    EXPECT_EQ(codesOf(decoded(ply(good, points + triangle), "a.ply")), Codes{});
+    const auto refused = [&](const std::string& header, const std::string& rows,
+                             std::string_view words) {
+        const std::string bytes = ply(header, rows);
+        EXPECT_NE(fault(bytes, "a.ply").find(words), std::string::npos) << fault(bytes, "a.ply");
+    };
+    refused(good + face + corners, points + triangle + triangle, "the element 'face' twice");
+    refused(vertices + good, points + points + triangle, "the element 'vertex' twice");
+    refused(good + corners, points + "3 0 1 2 3 0 2 1\n", "the property 'vertex_indices' twice");
+    refused(vertices + "property float x\n" + face + corners,
+            "0 0 0 9\n1 0 0 9\n0 1 0 9\n" + triangle, "the property 'x' twice");
+    refused("format binary_little_endian 1.0\n" + good, points + triangle,
+            "twice how it is encoded");
+}
+
+TEST(Counts, OfVtpArraysAreThoseOfItsPointsAndCells) {
+    EXPECT_EQ(codesOf(decoded(vtpWith("1 2 3", "1 2 3 4"), "a.vtp")), Codes{});
+    for (const char* const other : {"1 2", "1 2 3 4 5", ""}) {
+        EXPECT_NE(fault(vtpWith(other, "1 2 3 4"), "a.vtp").find("values, must hold 3"),
+                  std::string::npos);
+        EXPECT_NE(fault(vtpWith("1 2 3", other), "a.vtp").find("values, must hold 4"),
+                  std::string::npos);
+    }
+    // packed, where the array is at another's place
+    const TriangleMesh mesh = ball();
+    MeshWriteOptions options;
+    options.pointArrays = {{"p", std::vector<double>(mesh.points.size())}};
+    options.cellArrays = {{"c", std::vector<std::int32_t>(mesh.triangles.size())}};
+    const std::string vtp = written(mesh, "a.vtp", options);
+    EXPECT_EQ(codesOf(decoded(vtp, "a.vtp")), Codes{});
+    const std::string begin = "Name=\"c\" format=\"appended\" offset=\"";
+    const std::size_t at = vtp.find(begin) + begin.size();
+    const std::string offset = vtp.substr(at, vtp.find('"', at) - at);
+    EXPECT_NE(
+        fault(replaced(vtp, begin + offset, begin + "0"), "a.vtp").find("its array 'c' holds"),
+        std::string::npos);
+}
+
+TEST(Counts, ArraysThatAreNotCarriedAreNamed) {
+    const auto leftOut = [](const std::string& bytes, const char* name) {
+        return decodeMesh(bytes, findMeshFormat(name), name, {.keepsPointArrays = true})
+            .arraysLeftOut;
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(leftOut(vtpWith("1 2 3", "1 2 3 4"), "a.vtp"), Names{"c"});
+    EXPECT_EQ(decoded(vtpWith("1 2 3", "1 2 3 4"), "a.vtp").arraysLeftOut, Names{});
+    const std::string vtk =
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 "
+        "0\nPOLYGONS 1 4\n3 0 1 2\nPOINT_DATA 3\nSCALARS p float\nLOOKUP_TABLE default\n1 2 3\n"
+        "CELL_DATA 1\nSCALARS c float\nLOOKUP_TABLE default\n1\nFIELD f 2\nd 2 1 int\n1 2\n"
+        "e 1 1 string\nname\n";
+    EXPECT_EQ(leftOut(vtk, "a.vtk"), (Names{"c", "d", "e"}));
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nproperty float p\nelement face 1\nproperty list uchar int vertex_indices\n"
+        "property uchar red\nproperty list uchar float texcoord\nend_header\n0 0 0 1\n1 0 0 2\n"
+        "0 1 0 3\n3 0 1 2 255 2 0 0\n";
+    EXPECT_EQ(leftOut(ply, "a.ply"), (Names{"red", "texcoord"}));
+    std::string gifti = written(testing::tetrahedron(), "a.gii");
+    gifti = replaced(gifti, "NumberOfDataArrays=\"2\"", "NumberOfDataArrays=\"3\"");
+    gifti = replaced(gifti, "</GIFTI>",
+                     "<DataArray Intent=\"NIFTI_INTENT_SHAPE\" DataType=\"NIFTI_TYPE_FLOAT32\" "
+                     "Dimensionality=\"1\" Dim0=\"4\" Encoding=\"ASCII\"><Data>1 2 3 4</Data>"
+                     "</DataArray></GIFTI>");
+    EXPECT_EQ(leftOut(gifti, "a.gii"), Names{"NIFTI_INTENT_SHAPE"});
+}
+
 TEST(Counts, OfComponentsOfVtpPlacesAreThree) {
     const std::string vtp = written(ball(), "a.vtp");
     for (const std::string name : {"Points", "Normals"}) {

@@ -117,8 +117,11 @@ struct MeshFile {
     /// frame Voxel by GIFTI's matrix to scanner space (without a size).
     std::optional<ImageGeometry> volume;
     /// One value a point each; names hold no control characters. PLY's red, green and blue are one
-    /// array of colours, "RGB", and so are those of OBJ and OFF. Arrays of text are passed over.
+    /// array of colours, "RGB", and so are those of OBJ and OFF.
     std::vector<PointArray> pointArrays{};
+    /// With options.keepsPointArrays: names of arrays that were passed over, of triangles, of text
+    /// and of more than nine components, and GIFTI's beside the surface.
+    std::vector<std::string> arraysLeftOut{};
     const MeshFormat* format = nullptr;  ///< as its content says; never null after reading
     std::vector<Warning> warnings{};     ///< of reading; without the file's name
 };
