@@ -21,6 +21,7 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/Report/Report.h"
+#include "adaptiso/SurfaceChecks/CheckJson.h"
 
 namespace adaptiso::compare {
 namespace {
@@ -164,23 +165,6 @@ std::vector<Check> makeChecks(const CompareRun& run) {
     return checks;
 }
 
-void warnOfRough(CompareRun& run) {
-    const DistanceStatistics& distances = run.distances.combined;
-    const auto warn = [&](std::int64_t points, const std::string& why) {
-        if (points == 0) return;
-        run.warnings.push_back(
-            {"distance-rough", counted(points, "point lies", "points lie") + why});
-    };
-    warn(distances.rough.rough,
-         " about as far from more than 100 triangles each: distances there may be a hundredth too "
-         "large");
-    warn(distances.leftOut + distances.leftOutVertices,
-         " near more than 500 triangles each, more than are measured: " +
-             formatCount(distances.measured()) + " of " + formatCount(distances.samples) +
-             " samples are, which gives the mean to within " + formatShort(distances.meanErrorMm) +
-             " mm (two standard errors); the largest distance may be larger");
-}
-
 /// Limits that fit no surface of this size. \param diagonalMm  of the smaller surface
 void warnOfSize(double diagonalMm, CompareRun& run) {
     for (const auto& [name, limit] : {std::pair{"--max-mean", run.options.maxMeanMm},
@@ -219,7 +203,7 @@ int runCompare(const CompareOptions& options) {
         return surfaceDistance(a, b,
                                {options.samples, options.isSymmetric, run.progress.callback()});
     });
-    warnOfRough(run);
+    addWarnings(run.warnings, roughDistanceWarnings(run.distances.combined));
     run.checks = makeChecks(run);
     warnOfSize(std::min(norm(boundingBox(a).size()), norm(boundingBox(b).size())), run);
     run.stage("overlap", [&] { measureOverlap(run, a, b); });

@@ -146,6 +146,21 @@ class Files(InFolder):
             with self.assertRaisesRegex(adaptiso.Error, "input_coordinates="):
                 wrong()
         self.assertLess(adaptiso.compare(mesh, mesh).max, 1e-9)
+        self.assertEqual(adaptiso.compare(mesh, mesh).report["warnings"], [])
+
+    def test_distances_of_fewer_points_are_warned_of(self):
+        n = np.arange(2000)  # triangles through a ball's middle, which all cross
+        a, b = 2 * np.pi * n * 0.618034, np.arccos(1 - 2 * ((n * 0.7548777) % 1))
+        u = 50 * np.stack([np.cos(a) * np.sin(b), np.sin(a) * np.sin(b), np.cos(b)], axis=1)
+        v = 50 * np.stack([-np.sin(a), np.cos(a), 0 * a], axis=1)
+        points = np.stack([u, v, -(u + v)], axis=1).reshape(-1, 3)
+        faces = np.arange(6000).reshape(-1, 3)
+        with self.assertLogs("adaptiso", "WARNING") as logs:
+            found = adaptiso.compare((points, faces), (points + [0.1, 0, 0], faces),
+                                     samples=20000, symmetric=False)
+        self.assertEqual([w["code"] for w in found.report["warnings"]], ["distance-rough"])
+        self.assertRegex(logs.output[0], r"compare: [\d,]+ points lie near more than 500 triangles")
+        self.assertIn(found.report["distances"]["combined"]["measured"], range(100, 10000))
 
     def test_the_frame_of_a_file_is_stated(self):
         known = sphere()

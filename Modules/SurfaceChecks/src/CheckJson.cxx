@@ -5,6 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include "adaptiso/Core/Phrases.h"
+#include "adaptiso/Core/Text.h"
+
 namespace adaptiso {
 
 namespace {
@@ -254,6 +257,23 @@ Json distanceJson(const DistanceStatistics& distances, const AffineTransform& to
     json["meanNormalDeviationDeg"] = number(distances.meanNormalDeviationDeg);
     json["p95NormalDeviationDeg"] = number(distances.p95NormalDeviationDeg);
     return json;
+}
+
+std::vector<Warning> roughDistanceWarnings(const DistanceStatistics& distances) {
+    std::vector<Warning> warnings;
+    const auto warn = [&](std::int64_t points, const std::string& why) {
+        if (points == 0) return;
+        warnings.push_back({"distance-rough", counted(points, "point lies", "points lie") + why});
+    };
+    warn(distances.rough.rough,
+         " about as far from more than 100 triangles each: distances there may be a hundredth too "
+         "large");
+    warn(distances.leftOut + distances.leftOutVertices,
+         " near more than 500 triangles each, more than are measured: " +
+             formatCount(distances.measured()) + " of " + formatCount(distances.samples) +
+             " samples are, which gives the mean to within " + formatShort(distances.meanErrorMm) +
+             " mm (two standard errors); the largest distance may be larger");
+    return warnings;
 }
 
 }  // namespace adaptiso

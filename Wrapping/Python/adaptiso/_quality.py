@@ -10,7 +10,7 @@ from ._adaptiso import Error
 from ._arguments import (Progress, count, flag, is_path, listed, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads, word)
 from ._images import base_name
-from ._mesh import Mesh, mesh_data_of, require_known_frames, stated_frames
+from ._mesh import Mesh, logger, mesh_data_of, require_known_frames, stated_frames
 from ._options import checked, takes
 
 if TYPE_CHECKING:
@@ -92,7 +92,8 @@ class Comparison(_Report):
     Attributes
     ----------
     report : dict
-        ``a``, ``b`` and ``distances`` as ``adaptiso-compare --json`` has them.
+        ``a``, ``b``, ``distances`` and ``warnings`` as ``adaptiso-compare --json`` has them; the
+        warnings go to the logger "adaptiso" as well.
     """
 
     __slots__ = ()
@@ -267,7 +268,10 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True,
     text = _adaptiso.compare(data[0], data[1], count("samples", samples, 1, 10**9),
                              flag("symmetric", symmetric), checked_threads(threads),
                              checked_progress(progress))
-    return Comparison(json.loads(text))
+    comparison = Comparison(json.loads(text))
+    for warning in comparison.report["warnings"]:
+        logger.warning("compare: %s", warning["text"])
+    return comparison
 
 
 def _names(surfaces: Sequence[Any], names: Optional[Sequence[str]]) -> List[str]:

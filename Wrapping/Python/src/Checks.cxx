@@ -69,7 +69,8 @@ std::string compareMeshes(const MeshData& a, const MeshData& b, std::int64_t sam
                        {"distances",
                         {{"aToB", told(report.aToB)},
                          {"bToA", told(report.bToA)},
-                         {"combined", told(report.combined)}}}});
+                         {"combined", told(report.combined)}}},
+                       {"warnings", roughDistanceWarnings(report.combined)}});
     });
     return text;
 }

@@ -46,4 +46,7 @@ Json deviationJson(const DistanceStatistics& distances, const AffineTransform& t
 /// \param toFrame  takes points of the report to the frame of the output
 Json distanceJson(const DistanceStatistics& distances, const AffineTransform& toFrame);
 
+/// Where distances are rough, or of fewer points than were asked for.
+std::vector<Warning> roughDistanceWarnings(const DistanceStatistics& distances);
+
 }  // namespace adaptiso
