@@ -148,6 +148,14 @@ class Files(InFolder):
         self.assertLess(adaptiso.compare(mesh, mesh).max, 1e-9)
         self.assertEqual(adaptiso.compare(mesh, mesh).report["warnings"], [])
 
+    def test_a_mesh_of_no_triangle_is_no_sound_surface(self):
+        points = sphere().vertices
+        for empty in (([], []), (points, []), adaptiso.Mesh(points, [])):
+            with self.assertRaisesRegex(adaptiso.Error, "^mesh: has no triangles$"):
+                adaptiso.check(empty)
+            with self.assertRaisesRegex(adaptiso.Error, "^surface 2: has no triangles$"):
+                adaptiso.check_nested([sphere(), empty])
+
     def test_distances_of_fewer_points_are_warned_of(self):
         n = np.arange(2000)  # triangles through a ball's middle, which all cross
         a, b = 2 * np.pi * n * 0.618034, np.arccos(1 - 2 * ((n * 0.7548777) % 1))

@@ -29,9 +29,15 @@ CheckRules rulesOf(const std::string& profile, const py::dict& options) {
     return rules;
 }
 
+/// Nothing is wrong with a mesh of no triangle, nor is it a surface: files without are refused too.
+void requireTriangles(const MeshData& data, const std::string& name) {
+    if (data.mesh().triangles.empty()) throw InvalidInput(name + ": has no triangles");
+}
+
 std::string checkMesh(const MeshData& data, const std::string& profile, const py::dict& options,
                       int threads) {
     const CheckRules rules = rulesOf(profile, options);
+    requireTriangles(data, "mesh");
     std::string json;
     runUnlocked(threads, [&] { json = dumped(surfaceVerdict(data.mesh(), rules)); });
     return json;
@@ -43,7 +49,10 @@ std::string checkNested(const std::vector<std::shared_ptr<MeshData>>& meshes,
     CheckRules rules = rulesOf(profile, options);
     rules.isNested = true;
     std::vector<const TriangleMesh*> surfaces;
-    for (const auto& mesh : meshes) surfaces.push_back(&mesh->mesh());
+    for (std::size_t n = 0; n < meshes.size(); ++n) {
+        requireTriangles(*meshes[n], names[n]);
+        surfaces.push_back(&meshes[n]->mesh());
+    }
     std::string text;
     runUnlocked(threads, [&] { text = dumped(nestedJson(surfaces, names, {}, rules)); });
     return text;
