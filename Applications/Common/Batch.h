@@ -13,6 +13,9 @@
 
 namespace adaptiso {
 
+/// The option that says where the output of a run goes.
+constexpr const char* kOutputOption = "--output";
+
 /// The input of one run of a batch.
 struct BatchItem {
     std::string name;                           ///< replaces {name}, and names the record

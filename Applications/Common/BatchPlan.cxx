@@ -23,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kName = "{name}";
-constexpr const char* kOutput = "--output";
 
 bool isIn(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
@@ -60,7 +59,7 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
     for (const std::string& option : batch.runOptions) {
         const auto [name, value] = split(option);
         if (!isIn(program.outputOptions, name)) continue;
-        require(name != kOutput || batch.outputFolder.empty() || staysBelow(value),
+        require(name != kOutputOption || batch.outputFolder.empty() || staysBelow(value),
                 name + " " + value + ": must be a name below --output-dir");
         require(holdsName(value),
                 name + " " + value +
@@ -127,7 +126,7 @@ std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchI
         for (const std::string& option : batch.runOptions) {
             const auto [name, pattern] = split(option);
             const std::string value = replaced(pattern, kName, item.name);
-            if (name == kOutput) {
+            if (name == kOutputOption) {
                 output = pattern;
             } else if (isIn(program.outputOptions, name)) {
                 run.extras.emplace_back(name, item.folder / value);
@@ -146,7 +145,8 @@ std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchI
         run.record = item.folder / item.name;
         if (!output.empty()) {
             run.outputFolder = output;
-            run.arguments.push_back(std::string(kOutput) + "=" + (item.folder / output).string());
+            run.arguments.push_back(std::string(kOutputOption) + "=" +
+                                    (item.folder / output).string());
             if (program.surfaceFiles && !surfaceValues.empty()) {
                 run.surfaces = program.surfaceFiles(item.folder / output, surfaceValues);
                 run.record = run.surfaces.front();

@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kOutput = "--output";
-
 RecordedFile described(const std::string& option, const std::string& name, const fs::path& path) {
     RecordedFile file;
     file.file = name;
@@ -275,7 +273,7 @@ private:
         };
         for (const std::string& file : resultOf(record.report, "files", Files())) {
             record.outputs.push_back((run.outputFolder.parent_path() / file).string());
-            add(kOutput, record.outputs.back());
+            add(kOutputOption, record.outputs.back());
         }
         if (record.hasPassed() && program_.sidecar) {
             std::vector<Json> parts{record.report};  // one for each surface
@@ -288,7 +286,7 @@ private:
                 const std::string name = sidecarName(made[k]);
                 writeWhole(run.item.folder / name,
                            jsonText(program_.sidecar(run.item, parts[k])) + "\n", run.item.folder);
-                add(kOutput, name);
+                add(kOutputOption, name);
             }
         }
         if (!record.isFinished()) return;
@@ -421,15 +419,15 @@ std::string changeOfOutputs(const PlannedRun& run, const RunRecord& record) {
     if (record.outputs.size() < run.surfaces.size()) return "it lacks a surface";
     for (const std::string& output : record.outputs) {
         const bool isRecorded = std::ranges::any_of(record.recordedOutputs, [&](const auto& file) {
-            return file.option == kOutput && file.file == output;
+            return file.option == kOutputOption && file.file == output;
         });
         if (!isRecorded) return "its record is damaged";
     }
     for (const RecordedFile& output : record.recordedOutputs) {
-        const bool isWanted =
-            output.option == kOutput || std::ranges::any_of(run.extras, [&](const auto& extra) {
-                return extra.first == output.option;
-            });
+        const bool isWanted = output.option == kOutputOption ||
+                              std::ranges::any_of(run.extras, [&](const auto& extra) {
+                                  return extra.first == output.option;
+                              });
         const fs::path path = run.item.folder / output.file;
         const FileChange change = isWanted ? changeOf(output, path) : FileChange::None;
         if (change != FileChange::None) return path.filename().string() + " " + changeText(change);

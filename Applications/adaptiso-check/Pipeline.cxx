@@ -28,8 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kProgram = "adaptiso-check";
-
 void checkOutputs(const CheckOptions& options) {
     std::vector<fs::path> inputs = options.files;
     inputs.push_back(options.volume);
@@ -368,7 +366,7 @@ Verdict verdictOf(const CheckRun& run) {
 
 /// A run for each of many surfaces, or of many heads. \return, \throws as runBatch()
 int runCheckBatch(const CheckOptions& options) {
-    BatchProgram program{"adaptiso-check", "", {"--volume"}, {"--report", "--pictures"}};
+    BatchProgram program{kProgram, "", {"--volume"}, {"--report", "--pictures"}};
     program.keepsRecords = false;
     const auto nameOf = [](const fs::path& file) { return file.filename().string(); };
     return runBatch(program, findBatchItems(options.batch, options.files, nameOf, options.isNested),

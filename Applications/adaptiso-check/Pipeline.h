@@ -15,6 +15,8 @@
 
 namespace adaptiso::checker {
 
+constexpr const char* kProgram = "adaptiso-check";
+
 /// Options of adaptiso-check.
 struct CheckOptions : CheckRules {
     std::vector<std::filesystem::path> files;       ///< one or more

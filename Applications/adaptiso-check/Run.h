@@ -54,7 +54,7 @@ struct NestingRun {
 /// One run of the program, for the reports.
 struct CheckRun : ProgramRun {
     explicit CheckRun(const CheckOptions& given)
-        : ProgramRun("adaptiso-check", given.common, given.report, ""), options(given) {}
+        : ProgramRun(kProgram, given.common, given.report, ""), options(given) {}
 
     const CheckOptions& options;
     std::optional<VolumeSummary> volume;

@@ -8,8 +8,6 @@
 namespace adaptiso::checker {
 namespace {
 
-constexpr const char* kProgram = "adaptiso-check";
-
 void printFailures(const selftest::SelfTest& test) {
     for (const selftest::Measurement& m : test.measurements) {
         if (m.hasPassed()) continue;

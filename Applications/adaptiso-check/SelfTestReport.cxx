@@ -16,8 +16,6 @@
 namespace adaptiso::checker::selftest {
 namespace {
 
-constexpr const char* kProgram = "adaptiso-check";
-
 /// The value of the first line "<name><separator>VALUE" of a file; "not said" without one.
 std::string lineOf(const char* file, const std::string& name, char separator) {
     std::ifstream lines(file);

@@ -129,8 +129,7 @@ warning with --strict, 2 wrong usage, 3 bad input (or no memory or disk left),
 checked; the exit code is then 3.)";
 
 Program checkProgram() {
-    return {"adaptiso-check",
-            "Checks whether triangle surfaces are sound, and shows where they are not.",
+    return {kProgram, "Checks whether triangle surfaces are sound, and shows where they are not.",
             "Required by the profiles:\n" + requiredText("bem, print, view", true, true) +
                 requiredText("bem, print", true, false) + requiredText("bem", false, false) +
                 kFooter};
