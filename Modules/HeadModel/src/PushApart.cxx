@@ -18,7 +18,7 @@
 namespace adaptiso {
 namespace {
 
-constexpr std::int64_t kGrain = 256;
+constexpr std::int64_t kPushGrain = 256;
 constexpr double kOvershoot = 1.02;  // moves aim at it; most of what is over may be lacking
 constexpr double kLackMet = 0.018;   // of the gap
 constexpr double kFade = 0.75;       // of a movement, from a vertex to its neighbours at least
@@ -110,7 +110,7 @@ void addOwnVertices(const TriangleMesh& moving, const SearchedSurface& fixed,
                     const PushOptions& options, Needs& needs) {
     const Side wanted = options.isOutward ? Side::Outside : Side::Inside;
     std::vector<Lack> lacks(moving.points.size());
-    parallelForPieces(std::ssize(lacks), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(std::ssize(lacks), kPushGrain, [&](std::int64_t begin, std::int64_t end) {
         for (VertexId v = begin; v < end; ++v) {
             lacks[v] = lackOf(moving.points[v], fixed, wanted, options.minGapMm);
         }
@@ -125,7 +125,7 @@ void addOtherVertices(const SearchedSurface& moving, const TriangleMesh& fixed,
                       const PushOptions& options, Needs& needs) {
     const Side wanted = options.isOutward ? Side::Inside : Side::Outside;
     std::vector<Lack> lacks(fixed.points.size());
-    parallelForPieces(std::ssize(lacks), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    parallelForPieces(std::ssize(lacks), kPushGrain, [&](std::int64_t begin, std::int64_t end) {
         for (VertexId v = begin; v < end; ++v) {
             lacks[v] = lackOf(fixed.points[v], moving, wanted, options.minGapMm);
         }
@@ -149,8 +149,8 @@ void addTriangles(const SearchedSurface& moving, const SearchedSurface& fixed,
     };
     const double gap = options.minGapMm, sign = options.isOutward ? 1 : -1;
     const std::int64_t count = std::ssize(moving.mesh.triangles);
-    std::vector<std::vector<Pair>> ofPiece((count + kGrain - 1) / kGrain);
-    parallelForPieces(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<std::vector<Pair>> ofPiece((count + kPushGrain - 1) / kPushGrain);
+    parallelForPieces(count, kPushGrain, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
             const std::array<Vec3, 3> own = cornersOf(moving.mesh, t);
             BoundingBox box = moving.tree.triangleBox(t);
@@ -163,7 +163,7 @@ void addTriangles(const SearchedSurface& moving, const SearchedSurface& fixed,
                 Vec3 direction = normalized(near.pointA - near.pointB);
                 // On the wrong side, the nearest points draw it further in.
                 if (dot(direction, outward) <= 0) direction = outward;
-                ofPiece[begin / kGrain].push_back({t, gap - near.distanceMm, direction});
+                ofPiece[begin / kPushGrain].push_back({t, gap - near.distanceMm, direction});
             });
         }
     });

@@ -11,7 +11,7 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNoRegion = ~std::uint32_t{0};
 
 /// Labels as numbers from 0 on, ascending, without 0, the outside.
 class RegionNumbers {
@@ -29,12 +29,12 @@ public:
     }
 
     std::size_t count() const { return labels_.size(); }
-    /// kNone for the outside.
+    /// kNoRegion for the outside.
     std::uint32_t of(Label label) const {
         const auto at = std::lower_bound(labels_.begin(), labels_.end(), label);
         return at != labels_.end() && *at == label
                    ? static_cast<std::uint32_t>(at - labels_.begin())
-                   : kNone;
+                   : kNoRegion;
     }
 
 private:
@@ -96,7 +96,7 @@ void measure(const DualComplex& complex, const std::vector<std::uint32_t>& polyg
         const Facet facet(complex, complex.polygons[polygons[n]], points);
         const double area = norm(facet.area);
         for (int side = 0; side < 2; ++side) {
-            if (sides[n][side] == kNone) continue;
+            if (sides[n][side] == kNoRegion) continue;
             regions[sides[n][side]].volume += side == 0 ? facet.volume : -facet.volume;
             regions[sides[n][side]].area += area;
         }
@@ -106,11 +106,11 @@ void measure(const DualComplex& complex, const std::vector<std::uint32_t>& polyg
 std::vector<Region> countVoxels(const LabelGrid& grid, const RegionNumbers& numbers) {
     std::vector<Region> regions(numbers.count());
     Label last = 0;
-    std::uint32_t number = kNone;
+    std::uint32_t number = kNoRegion;
     for (const Label label : grid.labels) {
         if (label == 0) continue;
         if (label != last) number = numbers.of(last = label);
-        if (number != kNone) ++regions[number].voxels;
+        if (number != kNoRegion) ++regions[number].voxels;
     }
     return regions;
 }
@@ -138,9 +138,9 @@ void restoreVolumes(const LabelGrid& grid, const DualComplex& complex,
     for (std::size_t n = 0; n < polygons.size(); ++n) {
         Sides own = sides[n];
         for (std::uint32_t& side : own) {
-            if (side != kNone && isLacking[side] == 0) side = kNone;
+            if (side != kNoRegion && isLacking[side] == 0) side = kNoRegion;
         }
-        if (own == Sides{kNone, kNone}) continue;
+        if (own == Sides{kNoRegion, kNoRegion}) continue;
         polygons[kept] = polygons[n];
         sides[kept++] = own;
     }
@@ -155,7 +155,7 @@ void restoreVolumes(const LabelGrid& grid, const DualComplex& complex,
         for (std::size_t n = 0; n < polygons.size(); ++n) {
             const Facet facet(complex, complex.polygons[polygons[n]], points);
             const auto outward = [&](std::uint32_t side) {
-                if (side == kNone || !(regions[side].area > 0)) return 0.0;
+                if (side == kNoRegion || !(regions[side].area > 0)) return 0.0;
                 return std::clamp(regions[side].lack() / regions[side].area, -kLargestStep,
                                   kLargestStep);
             };

@@ -12,8 +12,6 @@
 namespace adaptiso::detail {
 namespace {
 
-constexpr std::int64_t kPiece = 4096;
-
 using Polygon = DualComplex::Polygon;
 
 /// Cut of a polygon.
@@ -112,6 +110,8 @@ public:
     }
 
 private:
+    static constexpr std::int64_t kPiece = 4096;
+
     template <class T>
     static std::int64_t count(const std::vector<T>& of) {
         return static_cast<std::int64_t>(of.size());
