@@ -21,7 +21,7 @@ installPackages "$here/packages.txt"
 echo "== building adaptiso-mesh"
 # a folder that Testing/run.sh has configured stays as it is
 if [ ! -e build/release/build.ninja ]; then
-    cmake --log-level=WARNING --preset release -DADAPTISO_BUILD_TESTING=OFF
+    cmake --log-level=WARNING --preset release -DADAPTISO_BUILD_TESTING=OFF -DCMAKE_UNITY_BUILD=ON
 fi
 cmake --build --preset release --target adaptiso-mesh
 
