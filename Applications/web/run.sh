@@ -45,7 +45,7 @@ if [[ $isTest && ! -x $ADAPTISO_BIN/adaptiso-mesh ]]; then
 fi
 
 export NODE_PATH=/usr/share/nodejs  # acorn, which Emscripten's linker needs, for a Node that is not Debian's
-cmake --log-level=WARNING --preset web -DADAPTISO_WEB_LINK=$link
+cmake --log-level=WARNING --preset web -DADAPTISO_WEB_LINK=$link -DCMAKE_UNITY_BUILD=ON
 cmake --build --preset web --target adaptisoWeb adaptisoNode ${isTest:+"${unitTests[@]}"}
 version=$(sed -n 's/^project(adaptiso VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 node Applications/web/npm/build.mjs build/web "$version"
