@@ -43,8 +43,8 @@ struct DistanceStatistics {
 struct DistanceReport {
     DistanceStatistics aToB;
     DistanceStatistics bToA;  ///< zero samples unless options.isSymmetric
-    /// Over the samples of all directions, as many from A as from B; maxMm is then the
-    /// (symmetric) Hausdorff distance. Equals aToB unless options.isSymmetric.
+    /// Over the samples of all directions, as many from A as from B. Equals aToB unless
+    /// options.isSymmetric.
     DistanceStatistics combined;
 };
 
