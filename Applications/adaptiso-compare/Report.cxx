@@ -40,9 +40,10 @@ Json optionsJson(const CompareOptions& options) {
             {"strict", options.common.isStrict}};
 }
 
-Json distancesJson(const CompareRun& run, const DistanceStatistics& distances) {
-    if (distances.samples == 0) return nullptr;
+Json distancesJson(const CompareRun& run, const DistanceStatistics& distances,
+                   const HausdorffInterval& hausdorff) {
     Json json = distanceJson(distances, run.toFrame);
+    json["hausdorff"] = hausdorffJson(hausdorff, run.toFrame);
     json["inVoxels"] = run.voxelMm ? lengthsJson(distances, *run.voxelMm, "") : Json(nullptr);
     json["percentOfDiagonal"] = lengthsJson(distances, run.b.diagonalMm / 100, "");
     return json;
@@ -113,11 +114,24 @@ void printRow(std::ostream& out, std::string_view name, Length length, double un
     out << '\n';
 }
 
-void printLengths(std::ostream& out, const std::string& unitName, double unit,
-                  const DistanceReport& distances) {
-    for (const LengthFigure& row : lengthFigures()) {
-        printRow(out, std::string(row.label) + ", " + unitName, row.lengthMm, unit, distances);
+/// The row of what no point exceeds.
+void printBound(std::ostream& out, std::string_view unitName, double unit,
+                const HausdorffReport& hausdorff) {
+    out << "  " << std::left << std::setw(22) << "proved at most, " + std::string(unitName)
+        << std::right << std::setw(12) << formatBound(hausdorff.aToB.upperMm / unit);
+    if (hausdorff.bToA) {
+        out << std::setw(12) << formatBound(hausdorff.bToA->upperMm / unit) << std::setw(12)
+            << formatBound(hausdorff.combined.upperMm / unit);
     }
+    out << '\n';
+}
+
+void printLengths(std::ostream& out, const std::string& unitName, double unit,
+                  const CompareRun& run) {
+    for (const LengthFigure& row : lengthFigures()) {
+        printRow(out, std::string(row.label) + ", " + unitName, row.lengthMm, unit, run.distances);
+    }
+    printBound(out, unitName, unit, run.hausdorff);
 }
 
 void printDistances(std::ostream& out, const CompareRun& run) {
@@ -125,18 +139,21 @@ void printDistances(std::ostream& out, const CompareRun& run) {
     out << "  distance" << std::setw(26) << "A to B";
     if (run.options.isSymmetric) out << std::setw(12) << "B to A" << std::setw(12) << "both";
     out << '\n';
-    printLengths(out, "mm", 1, distances);
-    if (run.voxelMm) printLengths(out, "voxels", *run.voxelMm, distances);
+    printLengths(out, "mm", 1, run);
+    if (run.voxelMm) printLengths(out, "voxels", *run.voxelMm, run);
     const double percentMm = run.b.diagonalMm / 100;
     printRow(out, "mean, % of diagonal", &DistanceStatistics::meanMm, percentMm, distances);
     printRow(out, "maximum, % of diagonal", &DistanceStatistics::maxMm, percentMm, distances);
     printRow(out, "normals, mean degrees", &DistanceStatistics::meanNormalDeviationDeg, 1,
              distances);
     printRow(out, "normals, 95 % within", &DistanceStatistics::p95NormalDeviationDeg, 1, distances);
-    const Vec3 farthest = run.toFrame(distances.combined.maxPointMm);
-    out << "  farthest at " << formatFixed(farthest.x, 2) << ", " << formatFixed(farthest.y, 2)
-        << ", " << formatFixed(farthest.z, 2) << " ("
-        << (run.frame ? toString(*run.frame) : "frame not said") << ")\n";
+    const auto place = [&](const Vec3& pointMm) {
+        const Vec3 p = run.toFrame(pointMm);
+        return formatFixed(p.x, 2) + ", " + formatFixed(p.y, 2) + ", " + formatFixed(p.z, 2);
+    };
+    const HausdorffInterval& hausdorff = run.hausdorff.combined;
+    out << "  farthest at " << place(hausdorff.pointMm) << ", from " << place(hausdorff.nearestMm)
+        << " (" << (run.frame ? toString(*run.frame) : "frame not said") << ")\n";
 }
 
 void printDifferences(std::ostream& out, const CompareRun& run) {
@@ -156,7 +173,7 @@ void addVerdict(const CompareRun& run, const std::string& a, const std::string& 
     report.title = "Distance between " + a + " and " + b;
     report.headline = formatLength(distances.meanMm, 3) + " mm on the mean, " +
                       formatFixed(distances.p95Mm, 3) + " mm at 95 %, " +
-                      formatLength(distances.maxMm, 3) + " mm at most.";
+                      formatBound(run.hausdorff.combined.upperMm, 3) + " mm at most (proved).";
     if (run.checks.empty()) return;
     const bool havePassed = std::all_of(run.checks.begin(), run.checks.end(),
                                         [](const Check& check) { return check.hasPassed(); });
@@ -202,19 +219,22 @@ ReportTable distanceTable(const CompareRun& run) {
         std::string& column = table.columns.emplace_back(row.label);
         column.front() = static_cast<char>(std::toupper(column.front()));
     }
+    table.columns.emplace_back("Proved at most");
     table.columns.emplace_back("Angle between the surfaces, mean");
-    const auto add = [&](const std::string& name, const DistanceStatistics& statistics) {
+    const auto add = [&](const std::string& name, const DistanceStatistics& statistics,
+                         const HausdorffInterval& hausdorff) {
         std::vector<std::string>& cells = table.rows.emplace_back();
         cells.push_back(name);
         for (const LengthFigure& row : lengthFigures()) {
             cells.push_back(formatLength(statistics.*row.lengthMm, 4));
         }
+        cells.push_back(formatBound(hausdorff.upperMm));
         cells.push_back(formatFixed(statistics.meanNormalDeviationDeg, 2) + "°");
     };
-    add("A to B", run.distances.aToB);
-    if (run.options.isSymmetric) {
-        add("B to A", run.distances.bToA);
-        add("both", run.distances.combined);
+    add("A to B", run.distances.aToB, run.hausdorff.aToB);
+    if (run.hausdorff.bToA) {
+        add("B to A", run.distances.bToA, *run.hausdorff.bToA);
+        add("both", run.distances.combined, run.hausdorff.combined);
     }
     return table;
 }
@@ -230,34 +250,36 @@ ReportTable surfaceTable(const CompareRun& run) {
     return table;
 }
 
-ReportSpot farthest(const DistanceStatistics& statistics, const std::string& from,
-                    const std::string& to, bool isFailure) {
-    return {"farthest point of " + from + " from " + to + ", " + formatLength(statistics.maxMm, 3) +
-                " mm",
-            statistics.maxPointMm, isFailure};
+ReportSpot farthest(const HausdorffInterval& hausdorff, const std::string& from,
+                    const std::string& to, const std::optional<double>& limitMm) {
+    return {"farthest point of " + from + " from " + to + ", " +
+                formatLength(hausdorff.lowerMm, 3) + " mm",
+            hausdorff.pointMm, limitMm && hausdorff.upperMm > *limitMm};
 }
 
 }  // namespace
 
 std::string jsonReport(const CompareRun& run) {
     const DistanceReport& distances = run.distances;
-    return run.json("adaptiso-compare/1",
-                    {{"a", surfaceJson(run.a)},
-                     {"b", surfaceJson(run.b)},
-                     {"volume", volumeJson(run)},
-                     {"options", optionsJson(run.options)},
-                     {"coordinates", frameJson(run.frame)},
-                     {"voxelMm", orNull(run.voxelMm)},
-                     {"distances",
-                      {{"aToB", distancesJson(run, distances.aToB)},
-                       {"bToA", distancesJson(run, distances.bToA)},
-                       {"combined", distancesJson(run, distances.combined)}}},
-                     {"differences",
-                      {{"area", differenceJson(run.a.areaMm2, run.b.areaMm2, "mm2")},
-                       {"volume", differenceJson(run.a.volumeMm3, run.b.volumeMm3, "mm3")}}},
-                     {"overlap", overlapJson(run.overlap)},
-                     {"colored", coloredJson(run)},
-                     {"checks", checksJson(run.checks)}});
+    return run.json(
+        "adaptiso-compare/1",
+        {{"a", surfaceJson(run.a)},
+         {"b", surfaceJson(run.b)},
+         {"volume", volumeJson(run)},
+         {"options", optionsJson(run.options)},
+         {"coordinates", frameJson(run.frame)},
+         {"voxelMm", orNull(run.voxelMm)},
+         {"distances",
+          {{"aToB", distancesJson(run, distances.aToB, run.hausdorff.aToB)},
+           {"bToA", run.hausdorff.bToA ? distancesJson(run, distances.bToA, *run.hausdorff.bToA)
+                                       : Json(nullptr)},
+           {"combined", distancesJson(run, distances.combined, run.hausdorff.combined)}}},
+         {"differences",
+          {{"area", differenceJson(run.a.areaMm2, run.b.areaMm2, "mm2")},
+           {"volume", differenceJson(run.a.volumeMm3, run.b.volumeMm3, "mm3")}}},
+         {"overlap", overlapJson(run.overlap)},
+         {"colored", coloredJson(run)},
+         {"checks", checksJson(run.checks)}});
 }
 
 void printReport(std::ostream& out, const CompareRun& run) {
@@ -291,11 +313,8 @@ Report makeReport(const CompareRun& run, ShownSurfaces& shown) {
     if (run.frame == CoordinateFrame::TkRas) report.frame = "FreeSurfer's tkRAS mm";
     if (!run.frame) report.frame = kUnsaidFrame;
     const auto& limit = run.options.maxHausdorffMm;
-    const auto fails = [&](const DistanceStatistics& s) { return limit && s.maxMm > *limit; };
-    report.spots.push_back(farthest(run.distances.aToB, a, b, fails(run.distances.aToB)));
-    if (run.options.isSymmetric) {
-        report.spots.push_back(farthest(run.distances.bToA, b, a, fails(run.distances.bToA)));
-    }
+    report.spots.push_back(farthest(run.hausdorff.aToB, a, b, limit));
+    if (run.hausdorff.bToA) report.spots.push_back(farthest(*run.hausdorff.bToA, b, a, limit));
     std::stable_partition(report.spots.begin(), report.spots.end(),
                           [](const ReportSpot& spot) { return spot.isFailure; });
     report.valuesAre = "from the other surface";

@@ -15,6 +15,7 @@
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
+#include "adaptiso/MeshQuality/HausdorffInterval.h"
 #include "adaptiso/MeshQuality/LabelCentres.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/Report/Report.h"
@@ -52,9 +53,11 @@ struct Check {
     std::string name;  ///< "mean distance"
     std::string key;   ///< of the report: "maxMean"
     double limitMm = 0;
-    double valueMm = 0;
+    double leastMm = 0;  ///< the value is no less
+    double valueMm = 0;  ///< and no more
 
     bool hasPassed() const { return valueMm <= limitMm; }
+    bool hasFailed() const { return leastMm > limitMm; }
 };
 
 /// One run of the program, for the reports.
@@ -70,6 +73,7 @@ struct CompareRun : ProgramRun {
     AffineTransform toFrame;  ///< from the frame inside the program
     std::optional<double> voxelMm;
     DistanceReport distances;
+    HausdorffReport hausdorff;
     std::optional<OverlapSummary> overlap;
     std::optional<ColoredSummary> colored;
     std::vector<Check> checks;

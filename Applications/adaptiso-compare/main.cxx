@@ -51,7 +51,8 @@ void declareChecks(CLI::App& app, CompareOptions& options) {
     checks.number("--max-mean", "MM", options.maxMeanMm, length,
                   "Largest mean distance that passes");
     checks.number("--max-hausdorff", "MM", options.maxHausdorffMm, length,
-                  "Largest maximum distance (Hausdorff) that passes");
+                  "Largest Hausdorff distance that passes: no point may lie farther, which is "
+                  "proved");
 }
 
 void declareOutput(CLI::App& app, CompareOptions& options) {

@@ -42,6 +42,7 @@ class Truth(CompareTest):
                 self.assertAlmostEqual(distances[key + "Mm"], 0.75, 12)
                 self.assertAlmostEqual(distances["inVoxels"][key], 1.5, 12)
                 self.assertAlmostEqual(distances["percentOfDiagonal"][key], 75 / diagonal, 12)
+            self.assert_encloses(distances, 0.75, diagonal)
             self.assertEqual(distances["meanNormalDeviationDeg"], 0)
         self.assertEqual(report["differences"]["area"], {"mm2": 0, "percent": 0})
         self.assertEqual(report["differences"]["volume"], {"mm3": None, "percent": None})
@@ -57,6 +58,7 @@ class Truth(CompareTest):
             distances = report["distances"][direction]
             for key in ("meanMm", "rmsMm", "p95Mm", "p99Mm", "maxMm"):
                 self.assertAlmostEqual(distances[key], 2, delta=sag)
+            self.assert_encloses(distances, distances["maxMm"], 35)
             # two facets that overlap differ by at most their own angles
             self.assertLess(distances["p95NormalDeviationDeg"], 2 * 180 / 48)
         area, volume = report["differences"]["area"], report["differences"]["volume"]
@@ -76,6 +78,29 @@ class Truth(CompareTest):
         self.assertAlmostEqual(report["distances"]["combined"]["maxMm"],
                                math.sqrt(50 + 0.75 ** 2), 12)
         self.assertEqual(report["distances"]["combined"]["maxPointMm"], [10, 10, 0])
+        hausdorff = report["distances"]["combined"]["hausdorff"]
+        self.assertEqual((hausdorff["pointMm"], hausdorff["nearestMm"]), ([10, 10, 0], [5, 5, 0.75]))
+
+    def assert_encloses(self, distances, truth, size):
+        hausdorff = distances["hausdorff"]
+        self.assertIs(hausdorff["isComplete"], True)
+        self.assertLessEqual(hausdorff["lowerMm"], truth)
+        self.assertGreaterEqual(hausdorff["upperMm"], truth)
+        self.assertLessEqual(hausdorff["upperMm"] - hausdorff["lowerMm"], max(1e-3 * truth, 1e-6 * size))
+
+    def test_the_farthest_point_need_be_no_vertex(self):
+        """Between three small triangles, farthest from a point on an edge that no sample hits."""
+        self.write("a.off", ([(0, 0, 0), (8, 0, 0), (0, 6, 0)], [(0, 1, 2)]))
+        points, triangles = [], []
+        for x, y in ((0, 0), (8, 0), (0, 6)):
+            triangles.append(tuple(range(len(points), len(points) + 3)))
+            points += [(x, y, 0), (x, y, 1), (x, y, 2)]
+        points[2] = (-1, -1, 2)  # one has area
+        self.write("b.off", (points, triangles))
+        report = self.compare("a.off", "b.off", "--one-sided", "--samples", "1")
+        distances = report["distances"]["combined"]
+        self.assert_encloses(distances, 5, 15)  # of a right angle, half the longest side
+        self.assertLess(distances["maxMm"], 4.9)
 
     @unittest.skipIf(vtk is None, "needs python3-vtk9")
     def test_vertex_distances_are_those_of_vtk(self):
@@ -125,10 +150,15 @@ class Truth(CompareTest):
         self.assertLessEqual(both["maxMm"], 0.1 + 1e-9)  # the shift: rough distances were of millimetres
         self.assertGreater(both["meanErrorMm"], 0)
         self.assertLess(both["meanErrorMm"], both["meanMm"] / 4)
-        warning, = (w for w in report["warnings"] if w["code"] == "distance-rough")
+        hausdorff = both["hausdorff"]
+        self.assertLessEqual(hausdorff["lowerMm"], 0.1)
+        warning, *others = (w for w in report["warnings"] if w["code"] == "distance-rough")
+        self.assertEqual([w["text"] for w in others], [] if hausdorff["isComplete"] else [
+            f"the maximum distance is known to lie between {hausdorff['lowerMm']:.4g} and "
+            f"{hausdorff['upperMm']:.4g} mm only: many triangles lie about as far from each point"])
         self.assertRegex(warning["text"], r"^[\d,]+ points lie near more than 500 triangles each, more than are "
                                           r"measured: [\d,]+ of 20,000 samples are, which gives the mean to within "
-                                          r"0\.\d+ mm \(two standard errors\); the largest distance may be larger$")
+                                          r"0\.\d+ mm \(two standard errors\)$")
 
 
 class Colored(CompareTest):
@@ -255,10 +285,18 @@ class Checks(CompareTest):
         self.write("b.off", plane(0.5, 10))
 
     def test_passed(self):
-        report = self.compare("a.off", "b.off", "--max-mean", "0.5", "--max-hausdorff", "0.5")
-        self.assertEqual(report["checks"],
-                         [{"name": "maxMean", "limitMm": 0.5, "valueMm": 0.5, "passed": True},
-                          {"name": "maxHausdorff", "limitMm": 0.5, "valueMm": 0.5, "passed": True}])
+        report = self.compare("a.off", "b.off", "--max-mean", "0.5", "--max-hausdorff", "0.500001")
+        mean, hausdorff = report["checks"]
+        self.assertEqual(mean, {"name": "maxMean", "limitMm": 0.5, "valueMm": 0.5, "passed": True})
+        self.assertEqual(hausdorff["valueMm"], report["distances"]["combined"]["hausdorff"]["upperMm"])
+        self.assertEqual((hausdorff["name"], hausdorff["passed"]), ("maxHausdorff", True))
+        self.assertLessEqual(hausdorff["valueMm"], 0.500001)
+
+    def test_what_is_not_shown_does_not_pass(self):
+        done = self.run_compare("a.off", "b.off", "--max-hausdorff", "0.5")  # but for rounding it is
+        self.assertEqual(done.returncode, CHECK_FAILED)
+        self.assertRegex(done.stderr, r"^adaptiso-compare: check failed: maximum distance may be "
+                                      r"0\.50000000\d* mm, at most 0\.5 mm\n$")
 
     def test_failed_says_so_and_still_writes(self):
         done = self.run_compare("a.off", "b.off", "--max-mean", "0.4", "--max-hausdorff", "0.6",

@@ -61,6 +61,18 @@ class Values(unittest.TestCase):
             self.assertNotEqual(value, None)
         self.assertEqual(repr(image), "<adaptiso.Image of 2 x 3 x 4 voxels, float64, array>")
 
+    def test_a_comparison_encloses_the_hausdorff_distance(self):
+        mesh = sphere()
+        moved = adaptiso.Mesh(mesh.vertices + (0.25, 0, 0), mesh.faces)
+        for comparison in (adaptiso.compare(mesh, moved, samples=1000),
+                           adaptiso.compare(mesh, moved, samples=1000, symmetric=False)):
+            lower, upper = comparison.hausdorff
+            self.assertLessEqual(comparison.max - 1e-9, upper)
+            self.assertLessEqual(lower, upper)
+            self.assertLessEqual(upper, 0.25 * (1 + 2e-3))  # no point went farther than it was moved
+            self.assertLessEqual(upper - lower, 1e-3 * upper)
+            self.assertIn(f"max {upper:.4g} mm", repr(comparison))
+
     def test_own_arrays_make_a_mesh_and_are_copied(self):
         points = np.array([[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]], np.float32)
         mesh = adaptiso.Mesh(points, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])

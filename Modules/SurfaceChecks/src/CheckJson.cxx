@@ -259,7 +259,16 @@ Json distanceJson(const DistanceStatistics& distances, const AffineTransform& to
     return json;
 }
 
-std::vector<Warning> roughDistanceWarnings(const DistanceStatistics& distances) {
+Json hausdorffJson(const HausdorffInterval& hausdorff, const AffineTransform& toFrame) {
+    return {{"lowerMm", number(hausdorff.lowerMm)},
+            {"upperMm", number(hausdorff.upperMm)},
+            {"isComplete", hausdorff.isComplete},
+            {"pointMm", vector(toFrame(hausdorff.pointMm))},
+            {"nearestMm", vector(toFrame(hausdorff.nearestMm))}};
+}
+
+std::vector<Warning> roughDistanceWarnings(const DistanceStatistics& distances,
+                                           const HausdorffInterval& hausdorff) {
     std::vector<Warning> warnings;
     const auto warn = [&](std::int64_t points, const std::string& why) {
         if (points == 0) return;
@@ -272,7 +281,14 @@ std::vector<Warning> roughDistanceWarnings(const DistanceStatistics& distances) 
          " near more than 500 triangles each, more than are measured: " +
              formatCount(distances.measured()) + " of " + formatCount(distances.samples) +
              " samples are, which gives the mean to within " + formatShort(distances.meanErrorMm) +
-             " mm (two standard errors); the largest distance may be larger");
+             " mm (two standard errors)");
+    if (!hausdorff.isComplete) {
+        warnings.push_back(
+            {"distance-rough", "the maximum distance is known to lie between " +
+                                   formatShort(hausdorff.lowerMm) + " and " +
+                                   formatShort(hausdorff.upperMm) +
+                                   " mm only: many triangles lie about as far from each point"});
+    }
     return warnings;
 }
 

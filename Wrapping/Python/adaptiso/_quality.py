@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _adaptiso
 from ._adaptiso import Error
@@ -123,12 +123,18 @@ class Comparison(_Report):
 
     @property
     def max(self) -> float:
-        """The largest distance, mm: the Hausdorff distance."""
+        """The largest distance measured, mm: of points and vertices."""
         return self._of("maxMm")
+
+    @property
+    def hausdorff(self) -> Tuple[float, float]:
+        """The Hausdorff distance, mm, of all points of both: it is proved to lie between the two."""
+        interval = self.report["distances"]["combined"]["hausdorff"]
+        return float(interval["lowerMm"]), float(interval["upperMm"])
 
     def __repr__(self) -> str:
         return (f"<adaptiso.Comparison: mean {self.mean:.4g} mm, 95 % {self.p95:.4g} mm, "
-                f"max {self.max:.4g} mm>")
+                f"max {self.hausdorff[1]:.4g} mm>")
 
 
 @takes("check")

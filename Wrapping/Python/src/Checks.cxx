@@ -14,6 +14,7 @@
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshQuality/HausdorffInterval.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SurfaceChecks/CheckJson.h"
 #include "adaptiso/SurfaceChecks/SurfaceSize.h"
@@ -65,21 +66,30 @@ std::string compareMeshes(const MeshData& a, const MeshData& b, std::int64_t sam
     watcher.run(threads, [&] {
         // in LPS, as the program does: where two triangles are equally near the same one counts
         const AffineTransform toRas = lpsToFrame(CoordinateFrame::Ras, {});
-        const auto told = [&](const DistanceStatistics& distances) {
-            return distances.samples == 0 ? Json(nullptr) : distanceJson(distances, toRas);
+        const auto told = [&](const DistanceStatistics& distances,
+                              const HausdorffInterval& hausdorff) {
+            Json json = distanceJson(distances, toRas);
+            json["hausdorff"] = hausdorffJson(hausdorff, toRas);
+            return json;
         };
         const TriangleMesh meshA = a.lps(), meshB = b.lps();
         const SurfaceSize sizeA = measureSize(meshA, "a"), sizeB = measureSize(meshB, "b");
         const DistanceReport report =
             surfaceDistance(meshA, meshB, {samples, isSymmetric, watcher.callback()});
+        HausdorffOptions options;
+        options.isSymmetric = isSymmetric;
+        options.progress = watcher.callback();
+        options.farOnA = report.aToB.maxPointMm;
+        if (isSymmetric) options.farOnB = report.bToA.maxPointMm;
+        const HausdorffReport hausdorff = hausdorffDistance(meshA, meshB, options);
         text = dumped({{"a", sizeJson(sizeA)},
                        {"b", sizeJson(sizeB)},
                        {"options", {{"samples", samples}, {"symmetric", isSymmetric}}},
                        {"distances",
-                        {{"aToB", told(report.aToB)},
-                         {"bToA", told(report.bToA)},
-                         {"combined", told(report.combined)}}},
-                       {"warnings", roughDistanceWarnings(report.combined)}});
+                        {{"aToB", told(report.aToB, hausdorff.aToB)},
+                         {"bToA", isSymmetric ? told(report.bToA, *hausdorff.bToA) : Json(nullptr)},
+                         {"combined", told(report.combined, hausdorff.combined)}}},
+                       {"warnings", roughDistanceWarnings(report.combined, hausdorff.combined)}});
     });
     return text;
 }

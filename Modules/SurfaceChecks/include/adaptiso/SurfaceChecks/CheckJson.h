@@ -7,6 +7,7 @@
 
 #include "adaptiso/Json/Json.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshQuality/HausdorffInterval.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
@@ -46,7 +47,11 @@ Json deviationJson(const DistanceStatistics& distances, const AffineTransform& t
 /// \param toFrame  takes points of the report to the frame of the output
 Json distanceJson(const DistanceStatistics& distances, const AffineTransform& toFrame);
 
-/// Where distances are rough, or of fewer points than were asked for.
-std::vector<Warning> roughDistanceWarnings(const DistanceStatistics& distances);
+/// `hausdorff` of such an entry.
+Json hausdorffJson(const HausdorffInterval& hausdorff, const AffineTransform& toFrame);
+
+/// Where distances are rough or of fewer points than were asked for, or the interval is wide.
+std::vector<Warning> roughDistanceWarnings(const DistanceStatistics& distances,
+                                           const HausdorffInterval& hausdorff);
 
 }  // namespace adaptiso
