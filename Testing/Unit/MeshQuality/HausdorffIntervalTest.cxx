@@ -52,7 +52,7 @@ TriangleMesh pointsAsTriangles(const std::vector<Vec3>& points) {
     return mesh;
 }
 
-TriangleMesh oneTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+TriangleMesh loneTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
     return {{a, b, c}, {}, {{0, 1, 2}}};
 }
 
@@ -100,7 +100,7 @@ TEST(HausdorffInterval, FindsTheFarthestPointWithinATriangle) {
     // away
     const std::vector<Vec3> corners{{0, 0, 0}, {4, 0, 0}, {1, 3, 0}};
     const HausdorffInterval interval =
-        hausdorffDistance(oneTriangle(corners[0], corners[1], corners[2]),
+        hausdorffDistance(loneTriangle(corners[0], corners[1], corners[2]),
                           pointsAsTriangles(corners), oneWay())
             .aToB;
     expectHolds(interval, std::sqrt(5.0), 5);
@@ -109,13 +109,13 @@ TEST(HausdorffInterval, FindsTheFarthestPointWithinATriangle) {
 
 TEST(HausdorffInterval, TakesTrianglesWithoutArea) {
     // a segment, half-way between two points
-    const TriangleMesh segment = oneTriangle({0, 0, 0}, {10, 0, 0}, {3, 0, 0});
+    const TriangleMesh segment = loneTriangle({0, 0, 0}, {10, 0, 0}, {3, 0, 0});
     const HausdorffReport report =
         hausdorffDistance(segment, pointsAsTriangles({{0, 0, 0}, {10, 0, 0}}));
     expectHolds(report.aToB, 5, 10);
     EXPECT_LE(report.bToA->upperMm, kRounding);
     // a needle of 1e-13 of its length: beside its middle, not beside its corners
-    const TriangleMesh needle = oneTriangle({0, 0, 0}, {100, 0, 0}, {30, 1e-11, 0});
+    const TriangleMesh needle = loneTriangle({0, 0, 0}, {100, 0, 0}, {30, 1e-11, 0});
     expectHolds(hausdorffDistance(pointsAsTriangles({{50, 0, 7}}), needle).aToB, 7, 100);
 }
 
@@ -185,7 +185,7 @@ TEST(HausdorffInterval, IsNarrowedUntilALimitIsJudged) {
 
 TEST(HausdorffInterval, BeginsWithPointsThatAreGiven) {
     // the circumcentre: no vertex is as far
-    const TriangleMesh large = oneTriangle({0, 0, 0}, {4, 0, 0}, {1, 3, 0});
+    const TriangleMesh large = loneTriangle({0, 0, 0}, {4, 0, 0}, {1, 3, 0});
     HausdorffOptions options = oneWay();
     options.farOnA = Vec3{2, 1, 0};
     const HausdorffInterval interval =
