@@ -77,3 +77,5 @@ target_compile_definitions(gtest PUBLIC GTEST_HAS_PTHREAD=0)
 target_link_libraries(gtest_main PUBLIC gtest)
 add_library(GTest::gtest ALIAS gtest)
 add_library(GTest::gtest_main ALIAS gtest_main)
+# others' sources are not written to be one
+set_target_properties(libraryGaps zlib expat gtest gtest_main PROPERTIES UNITY_BUILD OFF)
