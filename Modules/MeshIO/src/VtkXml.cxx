@@ -6,6 +6,7 @@
 // or '<' in one breaks the file.
 #include <algorithm>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -558,7 +559,8 @@ void encodeVtkXml(const MeshRecord& record, ByteSink& sink) {
 /// Arrays that are not read are as many as the points or the cells too.
 void passOver(const VtpHandler& handler, const ArrayReader& reader, bool keepsArrays,
               MeshFile& file) {
-    constexpr std::size_t kMostCells = std::size_t{1} << 60, kMostValues = std::size_t{1} << 62;
+    constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max(), kMostCells = kMost / 16,
+                          kMostValues = kMost / 4;
     std::int64_t cells = 0;
     for (const char* const kind : {"NumberOfVerts", "NumberOfLines", "NumberOfPolys"}) {
         const std::int64_t count = toInteger(attributeOr(handler.piece, kind, "0"), kind);
