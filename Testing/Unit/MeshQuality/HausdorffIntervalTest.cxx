@@ -319,7 +319,7 @@ void expectHoldsSamples(const TriangleMesh& a, const TriangleMesh& b, int steps)
     EXPECT_EQ(report.combined.upperMm, std::max(report.aToB.upperMm, report.bToA->upperMm));
 }
 
-TEST(HausdorffInterval, HoldsWhatSamplesOfRandomTrianglesFind) {
+TEST(HausdorffInterval, HoldsWhatSamplesFindOnRandomTriangles) {
     for (unsigned seed = 0; seed < 150; ++seed) {
         SCOPED_TRACE(seed);
         RandomMeshes random(seed);
@@ -328,7 +328,7 @@ TEST(HausdorffInterval, HoldsWhatSamplesOfRandomTrianglesFind) {
     }
 }
 
-TEST(HausdorffInterval, HoldsWhatSamplesOfRoughSpheresFind) {
+TEST(HausdorffInterval, HoldsWhatSamplesFindOnRandomSpheres) {
     for (unsigned seed = 0; seed < 6; ++seed) {
         SCOPED_TRACE(seed);
         RandomMeshes random(seed);
