@@ -180,7 +180,7 @@ def planar_signs(axis, a, b, c):
 
 
 def meets(p, q, corners):
-    """Whether segments (n, 3) meet triangles (n, 3, 3); touching is meeting."""
+    """Whether segments (n, 3) have a point in common with triangles (n, 3, 3)."""
     sides = [(corners[:, n], corners[:, (n + 1) % 3]) for n in range(3)]
     above, below = (signs(*(corners[:, n] for n in range(3)), x) for x in (p, q))
     turns = np.array([signs(p, q, r, s) for r, s in sides])

@@ -69,10 +69,9 @@ struct DataPlace {
 ///
 /// A data file that is an image file itself must be entered where its own samples begin, or whole
 /// slices behind: elsewhere its header would be read as voxels.
-/// \throws FileError  the samples begin elsewhere; what is before a file's last bytes is more of
-/// the
-///                    image, or anything where the header is in that file too; less than
-///                    `byteCount` is there
+/// \throws FileError  the samples begin elsewhere; fewer than `byteCount` bytes are there; bytes
+///                    before them are part of the image; of an attached header, any bytes before
+///                    them
 ByteSource openData(const DataPlace& place, std::uint64_t byteCount, const ImageExtent& extent);
 
 /// A volume, and what is behind it in its file.

@@ -475,7 +475,7 @@ struct HalfSpace {
     double least;
 };
 
-/// What lies in all of them.
+/// The intersection of up to four half-spaces.
 struct HalfSpaces {
     std::array<HalfSpace, 4> sides;
     int count = 0;

@@ -62,7 +62,7 @@ std::vector<Corner> vertexCorners(const TriangleMesh& from, const DistanceTarget
     return corners;
 }
 
-/// What is known of some triangles.
+/// Bounds of the distance of some triangles from the other surface.
 struct Bounds {
     FarPoint farthest;
     double closed = 0;  ///< squared bound of those that are done with

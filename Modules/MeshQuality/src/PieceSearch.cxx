@@ -302,7 +302,8 @@ void PieceSearch::cut(const Piece& piece) {
 }
 
 /// Looks for a point of an edge near enough to the triangles of both ends: a corner of either part.
-/// \param at  gets it for each; where there is none, a point near a third triangle
+/// \param at  gets the point twice, as a corner of a's part and of b's; where there is none, a
+///            point near a third triangle
 bool PieceSearch::isParted(const Corner& a, const Corner& b, std::array<Corner, 2>& at) {
     constexpr int kMostSteps = 24;
     double low = 0, high = 1;

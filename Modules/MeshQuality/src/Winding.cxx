@@ -22,7 +22,8 @@ constexpr std::uint32_t kNone = 0xFFFFFFFF, kLeftOut = kNone - 1;
 /// Relative to a piece's area to the power 1.5: a smaller volume may be rounding.
 constexpr double kFlatPiece = 1e-9;
 constexpr std::int64_t kTriangleGrain = 4096;
-/// Of a ray and a triangle for each kTriangleGrain triangles: thousands of pieces in each other.
+/// Tests of a ray and a triangle, at most, for each kTriangleGrain triangles: enough for thousands
+/// of pieces in each other.
 constexpr std::int64_t kMostTests = 1 << 24, kUnlimited = std::numeric_limits<std::int64_t>::max();
 
 /// For each start pieces, ascending.

@@ -24,7 +24,7 @@ using testing::merged;
 using testing::planeMesh;
 using testing::translated;
 
-/// Of coordinates up to 100 mm: twice what both ends leave to rounding.
+/// mm; twice the rounding that an interval includes where coordinates are up to 100 mm.
 constexpr double kRounding = 1e-10;
 
 HausdorffOptions oneWay() {
