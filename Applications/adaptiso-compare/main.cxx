@@ -52,7 +52,8 @@ void declareChecks(CLI::App& app, CompareOptions& options) {
                   "Largest mean distance that passes");
     checks.number("--max-hausdorff", "MM", options.maxHausdorffMm, length,
                   "Largest Hausdorff distance that passes: no point may lie farther, which is "
-                  "proved");
+                  "proved. The distance is known to a thousandth of itself or a millionth of the "
+                  "surfaces' size, whichever is more");
 }
 
 void declareOutput(CLI::App& app, CompareOptions& options) {

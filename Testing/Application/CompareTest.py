@@ -86,7 +86,8 @@ class Truth(CompareTest):
         self.assertIs(hausdorff["isComplete"], True)
         self.assertLessEqual(hausdorff["lowerMm"], truth)
         self.assertGreaterEqual(hausdorff["upperMm"], truth)
-        self.assertLessEqual(hausdorff["upperMm"] - hausdorff["lowerMm"], max(1e-3 * truth, 1e-6 * size))
+        self.assertAlmostEqual(hausdorff["toleranceMm"], max(1e-3 * hausdorff["lowerMm"], 1e-6 * size), places=12)
+        self.assertLessEqual(hausdorff["upperMm"] - hausdorff["lowerMm"], hausdorff["toleranceMm"])
 
     def test_the_farthest_point_need_be_no_vertex(self):
         """Between three small triangles, farthest from a point on an edge that no sample hits."""

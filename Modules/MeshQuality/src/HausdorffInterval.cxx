@@ -106,7 +106,8 @@ public:
         HausdorffInterval result;
         result.lowerMm = std::max(all.farthest.distance - tolerance_.roundingMm, 0.0);
         result.upperMm = std::sqrt(std::max(all.closed, all.open)) + tolerance_.roundingMm;
-        result.isComplete = result.upperMm - result.lowerMm <= tolerance_.at(result.lowerMm);
+        result.toleranceMm = tolerance_.at(result.lowerMm);
+        result.isComplete = result.upperMm - result.lowerMm <= result.toleranceMm;
         result.pointMm = all.farthest.point;
         result.nearestMm = all.farthest.nearest;
         return result;

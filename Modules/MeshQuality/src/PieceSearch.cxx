@@ -218,33 +218,38 @@ bool PieceSearch::isNearMiddle(Piece piece) {
 /// the tree.
 void PieceSearch::gatherNearby(const Piece& piece) {
     constexpr std::size_t kMost = 96;
-    const BoundingBox box =
+    BoundingBox box =
         boxOf(Corners{piece.corners[0].point, piece.corners[1].point, piece.corners[2].point});
+    const double reach = std::sqrt(enough_);
+    box.minimum = box.minimum - Vec3{reach, reach, reach};
+    box.maximum = box.maximum + Vec3{reach, reach, reach};
     nearby_.clear();
-    double reach = enough_;
-    to_.tree.forEachNear(
-        box, [&] { return reach; },
-        [&](std::int64_t triangle) {
-            --effort_;
-            const BoundingBox its = to_.tree.triangleBox(triangle);
-            if (squaredDistance(box, its) > reach) return;
-            if (nearby_.size() == kMost) {
-                reach = -1;
-            } else {
-                nearby_.push_back({its, triangle});
-            }
-        });
-    areAllNearby_ = reach >= 0;
+    areAllNearby_ = true;
+    to_.tree.forEachOverlap(box, [&](std::int64_t triangle) {
+        --effort_;
+        if (nearby_.size() == kMost) {
+            areAllNearby_ = false;
+            box = BoundingBox::empty();
+        } else {
+            nearby_.push_back({to_.tree.triangleBox(triangle), triangle});
+        }
+    });
 }
 
 /// The nearest triangle, or another one that is near enough.
+/// Those found last are asked first, and one at half the distance will do.
 PieceSearch::Corner PieceSearch::cornerAt(const Vec3& p, std::int64_t hint) {
     Corner corner{p, hint, squaredTo(p, hint)};
     if (areAllNearby_) {
-        for (const Nearby& nearby : nearby_) {
+        constexpr double kNear = 0.25;  // squared
+        for (Nearby& nearby : nearby_) {
             if (squaredDistance(p, nearby.box) >= corner.squared) continue;
             const double squared = squaredTo(p, nearby.triangle);
-            if (squared < corner.squared) corner = {p, nearby.triangle, squared};
+            if (squared < corner.squared) {
+                corner = {p, nearby.triangle, squared};
+                std::swap(nearby, nearby_.front());
+                if (squared < kNear * enough_) break;
+            }
         }
         if (corner.squared <= enough_) return corner;
     }

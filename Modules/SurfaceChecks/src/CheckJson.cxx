@@ -262,6 +262,7 @@ Json distanceJson(const DistanceStatistics& distances, const AffineTransform& to
 Json hausdorffJson(const HausdorffInterval& hausdorff, const AffineTransform& toFrame) {
     return {{"lowerMm", number(hausdorff.lowerMm)},
             {"upperMm", number(hausdorff.upperMm)},
+            {"toleranceMm", number(hausdorff.toleranceMm)},
             {"isComplete", hausdorff.isComplete},
             {"pointMm", vector(toFrame(hausdorff.pointMm))},
             {"nearestMm", vector(toFrame(hausdorff.nearestMm))}};

@@ -71,8 +71,8 @@ public:
     ClosestPoint closestPoint(const Vec3& p, std::int64_t hint = -1,
                               SearchEffort* effort = nullptr) const;
 
-    /// Calls visit(triangle) for every triangle whose box overlaps `box`, in an order that is
-    /// always the same.
+    /// Calls visit(triangle) for every triangle whose box overlaps `box`, always in the same order.
+    /// The box is read at every step: visit() stops the search by emptying it.
     template <class Visit>
     void forEachOverlap(const BoundingBox& box, const Visit& visit) const;
 

@@ -25,9 +25,10 @@ struct HausdorffOptions {
 struct HausdorffInterval {
     double lowerMm = 0;                                        ///< a point lies as far away
     double upperMm = std::numeric_limits<double>::infinity();  ///< no point lies farther
-    bool isComplete = false;                                   ///< it is as narrow as asked for
-    Vec3 pointMm;                                              ///< lies lowerMm away, or more
-    Vec3 nearestMm;  ///< its nearest point on the other surface, to rounding
+    double toleranceMm = 0;   ///< width that was asked for, see HausdorffOptions
+    bool isComplete = false;  ///< it is no wider
+    Vec3 pointMm;             ///< lies lowerMm away, or more
+    Vec3 nearestMm;           ///< its nearest point on the other surface, to rounding
 };
 
 struct HausdorffReport {
