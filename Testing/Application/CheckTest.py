@@ -27,6 +27,20 @@ class Truth(CheckTest):
         self.assertAlmostEqual(said["shape"]["edgeMm"]["maximum"], 100 * math.sqrt(2), 12)
         self.assertEqual(said["shape"]["edgeMm"]["minimum"], 100)
 
+    def test_cube_of_quadrangles(self):
+        """Six faces, cut into twelve triangles; a note, which --strict passes."""
+        points = [(x, y, z) for z in (0, 9) for x, y in ((0, 0), (9, 0), (9, 9), (0, 9))]
+        faces = ["0 3 2 1", "4 5 6 7", "0 1 5 4", "1 2 6 5", "2 3 7 6", "3 0 4 7"]
+        self.path("quads.off").write_text(
+            "OFF\n8 6 0\n" + "".join("%d %d %d\n" % point for point in points) +
+            "".join(f"4 {face}\n" for face in faces))
+        done = self.run_check("quads.off", "--strict", "--json", "-")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        [said] = json.loads(done.stdout)["surfaces"]
+        self.assertEqual((said["triangles"], said["volumeMm3"], said["areaMm2"]), (12, 729, 486))
+        self.assertEqual(done.stderr, "adaptiso-check: note: quads.off: 6 polygons were cut into "
+                         "12 triangles\n")
+
     def test_cavity_and_components(self):
         hollow = together(icosphere(50), flipped(icosphere(40)))
         said = self.surface(hollow)

@@ -264,9 +264,50 @@ void addCounts(Seeds& seeds) {
                   std::string("\3\0\0\0abc", 7) + "</AppendedData></VTKFile><!-- x -->");
 }
 
+/// Polygons and strips in every format that holds them.
+void addPolygons(Seeds& seeds) {
+    const std::string points = "0 0 0\n2 0 0\n2 2 1\n1 1 0\n0 2 0\n";
+    const auto ply = [&](const char* element, const char* rows) {
+        return "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+               "property float z\nelement " +
+               std::string(element) + " 2\nproperty list int int vertex_indices\nend_header\n" +
+               points + rows;
+    };
+    seeds.add("ply", ply("face", "4 0 1 2 3\n5 0 1 2 3 4\n"));
+    seeds.add("ply", ply("tristrips", "5 0 1 2 3 4\n7 0 1 2 -1 2 1 3\n"));
+    seeds.add("obj", "v 0 0 0\nv 2 0 0\nv 2 2 1\nv 1 1 0\nv 0 2 0\nf 1 2 3 4\nf 1 2 3 4 5\n");
+    seeds.add("off", "OFF\n5 2 0\n" + points + "4 0 1 2 3\n5 0 1 2 3 4\n");
+    const std::string head = "\nx\nASCII\nDATASET POLYDATA\nPOINTS 5 float\n" + points;
+    seeds.add("vtk", "# vtk DataFile Version 3.0" + head +
+                         "LINES 1 3\n2 0 1\nPOLYGONS 2 11\n4 0 1 2 3\n5 0 1 2 3 4\n"
+                         "TRIANGLE_STRIPS 1 6\n5 0 1 2 3 4\n");
+    seeds.add("vtk", "# vtk DataFile Version 5.1" + head +
+                         "POLYGONS 3 9\nOFFSETS vtktypeint64\n0 4 9\nCONNECTIVITY vtktypeint64\n"
+                         "0 1 2 3 0 1 2 3 4\n");
+    const auto cells = [](const std::string& element, const char* corners, const char* ends) {
+        return "<" + element + "><DataArray Name=\"connectivity\" format=\"ascii\">" + corners +
+               "</DataArray><DataArray Name=\"offsets\" format=\"ascii\">" + ends +
+               "</DataArray></" + element + ">";
+    };
+    seeds.add("vtp",
+              "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"5\" "
+              "NumberOfPolys=\"2\" NumberOfStrips=\"1\"><Points><DataArray format=\"ascii\">" +
+                  points + "</DataArray></Points>" + cells("Polys", "0 1 2 3 0 1 2 3 4", "4 9") +
+                  cells("Strips", "0 1 2 3 4", "5") + "</Piece></PolyData></VTKFile>");
+    const std::string quad("\0\0\0\0\0\1\0\0\2\0\0\3", 12), counts("\0\0\4\0\0\1", 6);
+    const std::string zero(4, '\0'), one("\x3F\x80\0\0", 4);
+    seeds.add("surf", "\xFF\xFF\xFD" + counts + zero + zero + zero + one + zero + zero + one + one +
+                          zero + zero + one + zero + quad);
+    seeds.add("surf",
+              "\xFF\xFF\xFF" + counts +
+                  std::string("\0\0\0\0\0\0\0\x64\0\0\0\0\0\x64\0\x64\0\0\0\0\0\x64\0\0", 24) +
+                  quad);
+}
+
 }  // namespace
 
 void addMeshSeeds(Seeds& seeds) {
+    addPolygons(seeds);
     addCounts(seeds);
     addOwnFiles(seeds);
     addGiftiWithMatrix(seeds);

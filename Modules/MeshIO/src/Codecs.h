@@ -90,10 +90,6 @@ private:
 /// A normal as a file has it, whatever its length. Damage where float can't hold it.
 Normal storedNormal(const Vec3& v);
 
-/// Refuses a polygon that is not a triangle.
-[[noreturn]] void refusePolygon(std::int64_t corners);
-[[noreturn]] void refuseStrips();
-
 /// Refuses images, surfaces of formats that are not read, and what findForeignContent() knows; says
 /// what reads or converts them. \param head        the first kMeshHeadBytes bytes, unpacked \param
 /// byteCount   of the file, unpacked \param isInflated  the file is gzip \throws FileError "<what

@@ -2,18 +2,22 @@
 // float32 points, int32 triangles, then tags: 2 (int32 useRealRAS), 20 (eight lines of text: the
 // geometry of the volume). As FreeSurfer's MRISwriteTriangularSurface, nibabel's
 // write_geometry and MNE's write_surface do it.
+// Quadrangles, read alone: FF FF FF or FF FF FD, V and F in 24 bits each, points as int16 in
+// hundredths of a millimetre or as float32, four numbers of points of 24 bits each.
 #include <array>
 #include <cmath>
 
 #include "Bytes.h"
 #include "Codecs.h"
 #include "Counts.h"
+#include "Faces.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso::meshio {
 namespace {
 
 constexpr std::string_view kTriangleMagic = "\xFF\xFF\xFE";
+constexpr std::string_view kOldQuadMagic = "\xFF\xFF\xFF", kQuadMagic = "\xFF\xFF\xFD";
 constexpr std::int32_t kUseRealRasTag = 2;
 constexpr std::int32_t kGeometryTag = 20;
 
@@ -169,12 +173,46 @@ void encodeFreeSurfer(const MeshRecord& record, ByteSink& sink) {
                  isValid, isTkRas ? options.volumeName : std::string(), sink);
 }
 
+std::int64_t number24(ByteSource& source) {
+    std::int64_t number = 0;
+    for (int byte = 0; byte < 3; ++byte) {
+        number = number << 8 | source.number<std::uint8_t>(std::endian::big);
+    }
+    return number;
+}
+
+/// Behind the magic; nothing follows the quadrangles.
+MeshFile decodeQuadrangles(ByteSource& source, bool areHundredths, const MeshReadOptions& options) {
+    MeshFile file;
+    const std::int64_t points = number24(source), quads = number24(source);
+    requireRoom("points", points, 3 * (areHundredths ? sizeof(std::int16_t) : sizeof(float)),
+                source.left());
+    file.mesh.points.resize(points);
+    for (Vec3& p : file.mesh.points) {
+        for (int axis = 0; axis < 3; ++axis) {
+            p[axis] = areHundredths ? source.number<std::int16_t>(std::endian::big) / 100.0
+                                    : source.number<float>(std::endian::big);
+        }
+    }
+    const Counted counted{"quadrangles", quads, 4 * 3};
+    requireRoom(counted.what, quads, counted.each, source.left());
+    Faces faces;
+    for (std::int64_t i = 0; i < quads; ++i) {
+        std::array<VertexId, 4> corners{};
+        for (VertexId& vertex : corners) vertex = number24(source);
+        faces.add(corners);
+    }
+    requireNoMore(counted, source.rest(), file.warnings);
+    file.frame = options.inputCoordinates.value_or(CoordinateFrame::TkRas);
+    std::move(faces).moveTo(file, options.keepsFaults);
+    return file;
+}
+
 MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options) {
     ByteSource source(bytes);
     const std::string_view magic = source.take(kTriangleMagic.size());
-    if (magic == "\xFF\xFF\xFF" || magic == "\xFF\xFF\xFD") {
-        unsupported("it is a FreeSurfer surface of quadrangles",
-                    "only triangles are read: convert it with mris_convert");
+    if (magic == kOldQuadMagic || magic == kQuadMagic) {
+        return decodeQuadrangles(source, magic == kOldQuadMagic, options);
     }
     if (magic != kTriangleMagic) {
         unsupported("it does not begin with FF FF FE", "it is no FreeSurfer surface: get it again");
@@ -206,15 +244,15 @@ MeshFile decodeFreeSurfer(std::string_view bytes, const MeshReadOptions& options
 }
 
 bool isFreeSurfer(std::string_view head, std::uint64_t byteCount) {
-    return head.starts_with("\xFF\xFF\xFE") || head.starts_with("\xFF\xFF\xFD") ||
-           (head.starts_with("\xFF\xFF\xFF") && !isCurv(head, byteCount));
+    return head.starts_with(kTriangleMagic) || head.starts_with(kQuadMagic) ||
+           (head.starts_with(kOldQuadMagic) && !isCurv(head, byteCount));
 }
 
 }  // namespace
 
 bool isCurv(std::string_view head, std::uint64_t byteCount) {
     constexpr std::uint64_t kHeaderBytes = 15;
-    if (!head.starts_with("\xFF\xFF\xFF") || head.size() < kHeaderBytes) return false;
+    if (!head.starts_with(kOldQuadMagic) || head.size() < kHeaderBytes) return false;
     const auto points = loadAs<std::uint32_t>(head.data() + 3, std::endian::big);
     const auto columns = loadAs<std::uint32_t>(head.data() + 11, std::endian::big);
     return columns == 1 && byteCount == kHeaderBytes + 4 * std::uint64_t{points};

@@ -227,15 +227,6 @@ Normal storedNormal(const Vec3& v) {
     return {toFloat(v.x, "a normal"), toFloat(v.y, "a normal"), toFloat(v.z, "a normal")};
 }
 
-void refusePolygon(std::int64_t corners) {
-    unsupported("it has a polygon of " + std::to_string(corners) + " corners",
-                "only triangles are read: triangulate it first");
-}
-
-void refuseStrips() {
-    unsupported("it holds triangle strips", "only triangles are read: triangulate it first");
-}
-
 }  // namespace meshio
 
 void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,

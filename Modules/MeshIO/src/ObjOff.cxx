@@ -1,9 +1,9 @@
-// Wavefront OBJ: "v x y z", "vn x y z", "f a//a b//b c//c", numbered from 1. As many
+// Wavefront OBJ: "v x y z", "vn x y z", "f a//a b//b c//c ...", numbered from 1. As many
 // programs have it, "v x y z r g b" is a point with a colour, 0 to 1. Groups, materials and texture
 // coordinates are passed over when read; a '\\' at the end of a point or face joins the next line.
-// OFF: "OFF", "V T 0", V lines "x y z", T lines "3 a b c" from 0; '#' begins a comment. With "COFF"
-// points have colours, "x y z r g b a": whole numbers to 255, or with a decimal point, 0 to 1.
-// "NOFF", "STOFF", "CNOFF" and "STCNOFF": what follows x y z is passed over.
+// OFF: "OFF", "V F 0", V lines "x y z", F lines "n a b c ..." from 0; '#' begins a comment. With
+// "COFF" points have colours, "x y z r g b a": whole numbers to 255, or with a decimal point, 0
+// to 1. "NOFF", "STOFF", "CNOFF" and "STCNOFF": what follows x y z is passed over.
 
 #include <algorithm>
 #include <charconv>
@@ -13,6 +13,7 @@
 #include "Bytes.h"
 #include "Codecs.h"
 #include "Counts.h"
+#include "Faces.h"
 
 namespace adaptiso::meshio {
 
@@ -76,7 +77,7 @@ std::int64_t resolved(std::string_view word, std::size_t count, std::string_view
 class ObjDecoder {
 public:
     explicit ObjDecoder(const MeshReadOptions& options)
-        : colors_(options.keepsPointArrays), marks_(options) {}
+        : keepsFaults_(options.keepsFaults), colors_(options.keepsPointArrays), marks_(options) {}
 
     void decodeLine(std::string_view text) {
         ByteSource line(text.substr(0, findComment(text)));
@@ -112,6 +113,7 @@ public:
         finishNormals();
         MeshFile file{std::move(mesh_), marks_.frame(), std::nullopt};
         file.pointArrays = colors_.take(file.mesh.points.size());
+        std::move(faces_).moveTo(file, keepsFaults_);
         return file;
     }
 
@@ -143,18 +145,15 @@ private:
     }
 
     void decodeFace(ByteSource& line) {
-        Triangle triangle{};
-        std::int64_t corners = 0;
-        for (std::string_view word = line.word(); !word.empty(); word = line.word(), ++corners) {
-            if (corners < 3) triangle[corners] = decodeCorner(word);
+        corners_.clear();
+        for (std::string_view word = line.word(); !word.empty(); word = line.word()) {
+            corners_.push_back(decodeCorner(word));
         }
-        if (corners < 3) malformed("a face has " + std::to_string(corners) + " corners");
-        if (corners > 3) refusePolygon(corners);
-        mesh_.triangles.push_back(triangle);
+        faces_.add(corners_);
         if (isAmongPoints_) noteBlock();
         if (mesh_.points.empty()) beginsWithFaces_ = true;
         isAmongPoints_ = false;
-        const VertexId largest = *std::ranges::max_element(triangle);
+        const VertexId largest = *std::ranges::max_element(corners_);
         largestUsed_ = std::max(largestUsed_, largest);
         if (!isBlockUsed_ && largest >= blockBegin_) {
             isBlockUsed_ = true;
@@ -199,7 +198,10 @@ private:
         noted = normal;
     }
 
-    TriangleMesh mesh_;
+    bool keepsFaults_;
+    TriangleMesh mesh_;  ///< without triangles
+    Faces faces_;
+    std::vector<VertexId> corners_;  ///< of a face
     PointColors colors_;
     FrameMarks marks_;
     std::vector<Normal> normals_;         ///< as listed in the file
@@ -371,13 +373,18 @@ MeshFile decodeOff(std::string_view bytes, const MeshReadOptions& options) {
         setToThere(faces, there, file.warnings);
     }
     requireRoom(faces.what, faces.count, 7, lines.left());
-    file.mesh.triangles.resize(static_cast<std::size_t>(faces.count));
-    for (Triangle& t : file.mesh.triangles) {
+    Faces polygons;
+    polygons.reserve(static_cast<std::size_t>(faces.count));
+    std::vector<VertexId> corners;
+    for (std::int64_t i = 0; i < faces.count; ++i) {
         line = lines.next("a face");
-        const std::int64_t corners = line.integerWord("the number of corners");
-        if (corners != 3) refusePolygon(corners);
-        for (VertexId& vertex : t) vertex = line.integerWord("a face's vertex");
+        corners.clear();
+        for (auto left = line.integerWord("the number of corners"); left > 0; --left) {
+            corners.push_back(line.integerWord("a face's vertex"));
+        }
+        polygons.add(corners);
     }
+    std::move(polygons).moveTo(file, options.keepsFaults);
     requireNoMoreText(faces, lines.rest(), file.warnings);
     file.frame = lines.marks.frame();
     return file;

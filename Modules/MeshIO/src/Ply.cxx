@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,12 +18,14 @@
 #include "Bytes.h"
 #include "Codecs.h"
 #include "Counts.h"
+#include "Faces.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 
 namespace adaptiso::meshio {
 namespace {
 
+constexpr std::string_view kStrips = "tristrips";
 constexpr std::int64_t kMostRows = std::int64_t{1} << 40;  // beyond what memory holds
 
 enum class Encoding { Text, LittleEndian, BigEndian };
@@ -344,22 +347,35 @@ bool isCorners(const Property& property) {
            (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-void readFaces(const Element& element, ValueReader& values, TriangleMesh& mesh) {
-    mesh.triangles.resize(element.count);
-    for (Triangle& triangle : mesh.triangles) {
+/// One strip, or several with -1 between them.
+void addStrips(std::span<const VertexId> corners, Faces& faces) {
+    for (auto begin = corners.begin(); begin != corners.end();) {
+        const auto end = std::find(begin, corners.end(), -1);
+        if (begin != end) faces.addStrip({begin, end});
+        begin = end == corners.end() ? end : end + 1;
+    }
+}
+
+void readFaces(const Element& element, ValueReader& values, Faces& faces) {
+    const bool areStrips = element.name == kStrips;
+    faces.reserve(areStrips ? 0 : static_cast<std::size_t>(element.count));
+    std::vector<VertexId> corners;
+    for (std::int64_t i = 0; i < element.count; ++i) {
         bool found = false;
+        corners.clear();
         values.beginRow();
         for (const Property& property : element.properties) {
             if (!isCorners(property) || found) {
                 skipProperty(property, values);
                 continue;
             }
-            const std::int64_t corners = values.integer(property.countType);
-            if (corners != 3) refusePolygon(corners);
-            for (VertexId& vertex : triangle) vertex = values.integer(property.type);
+            for (auto left = values.integer(property.countType); left > 0; --left) {
+                corners.push_back(values.integer(property.type));
+            }
             found = true;
         }
         if (!found) malformed("its faces have no list vertex_indices");
+        areStrips ? addStrips(corners, faces) : faces.add(corners);
     }
 }
 
@@ -489,28 +505,28 @@ MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
     }
     ValueReader values(source, header.encoding, rows);
     MeshFile file;
+    Faces faces;
     file.frame = header.marks.frame();
     Counted counted;
     for (Element& element : header.elements) {
         if (isOpenEnded && &element == &last) {
-            Counted faces = countedRows(last, values);
-            const std::int64_t there = faces.each > 0 ? values.rowsLeft(faces.each) : 0;
-            if (there > 0) setToThere(faces, there, file.warnings);
-            element.count = faces.count;
+            Counted rowsThere = countedRows(last, values);
+            const std::int64_t there = rowsThere.each > 0 ? values.rowsLeft(rowsThere.each) : 0;
+            if (there > 0) setToThere(rowsThere, there, file.warnings);
+            element.count = rowsThere.count;
         }
         if (element.count == 0) continue;
         requireElementRoom(element, values, source.left());
         counted = countedRows(element, values);
         if (element.name == "vertex") {
             readVertices(element, options.keepsPointArrays, values, file);
-        } else if (element.name == "face") {
-            readFaces(element, values, file.mesh);
+        } else if (element.name == "face" || element.name == kStrips) {
+            readFaces(element, values, faces);
             for (const Property& property : element.properties) {
                 if (!options.keepsPointArrays || isCorners(property)) continue;
                 file.arraysLeftOut.push_back(storedName(property.name));
             }
         } else {
-            if (element.name == "tristrips") refuseStrips();
             for (std::int64_t i = 0; i < element.count; ++i) {
                 values.beginRow();
                 for (const Property& property : element.properties) skipProperty(property, values);
@@ -518,6 +534,7 @@ MeshFile decodePly(std::string_view bytes, const MeshReadOptions& options) {
         }
     }
     if (counted.count > 0) values.requireNoMoreRows(counted, file.warnings);
+    std::move(faces).moveTo(file, options.keepsFaults);
     return file;
 }
 

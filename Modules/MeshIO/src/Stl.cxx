@@ -184,7 +184,9 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
                               file.warnings);
             break;
         } else if (word == "vertex") {
-            if (loop++ == 3) refusePolygon(4);
+            if (loop++ == 3) {
+                unsupported("a facet has more than 3 corners", "save it as PLY or OBJ");
+            }
             for (std::uint32_t& bits : corners.emplace_back()) {
                 bits = coordinateBits(toFloat(source.realWord("a coordinate"), "a coordinate"));
             }

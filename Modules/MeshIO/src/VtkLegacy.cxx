@@ -6,10 +6,12 @@
 // unchecked. What is written has the very bytes of vtkPolyDataWriter.
 #include <charconv>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "Bytes.h"
 #include "Counts.h"
+#include "Faces.h"
 #include "VtkFiles.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Surplus.h"
@@ -43,6 +45,7 @@ public:
     LegacyDecoder(std::string_view bytes, const MeshReadOptions& options)
         : source_(bytes),
           keepsArrays_(options.keepsPointArrays),
+          keepsFaults_(options.keepsFaults),
           marks_(options),
           fieldMarks_(options) {}
 
@@ -53,6 +56,8 @@ public:
         requireNoMoreSections();
         // 3D Slicer names the frame in the header, and takes fields of the file it read along
         file_.frame = marks_.frame() ? marks_.frame() : fieldMarks_.frame();
+        std::move(faces_).moveTo(file_, keepsFaults_);
+        noteLinesLeftOut(lines_, file_.warnings);
         return std::move(file_);
     }
 
@@ -88,9 +93,11 @@ private:
         } else if (section == "polygons") {
             decodePolygons(line);
         } else if (section == "vertices" || section == "lines") {
-            cells_ += static_cast<std::int64_t>(countCells(readCells(line)));
+            forEachCell(readCells(line), [&](std::span<const std::int64_t>) { ++lines_; });
         } else if (section == "triangle_strips") {
-            refuseStrips();
+            requireFirst(faces_.count() == polygons_, "TRIANGLE_STRIPS");
+            forEachCell(readCells(line),
+                        [&](std::span<const std::int64_t> corners) { faces_.addStrip(corners); });
         } else if (section == "point_data" || section == "cell_data") {
             tuples_ = line.integerWord("the number of tuples");
             isPointData_ = section == "point_data";
@@ -153,25 +160,24 @@ private:
 
     /// Refuses values that are not as many as the points, or the cells.
     void requireOneEach(std::int64_t tuples) const {
-        const std::int64_t there = isPointData_ ? std::ssize(file_.mesh.points)
-                                                : cells_ + std::ssize(file_.mesh.triangles);
+        const std::int64_t there =
+            isPointData_ ? std::ssize(file_.mesh.points) : lines_ + faces_.count();
         if (tuples == there) return;
         const std::string what = isPointData_ ? " points" : " cells";
         damaged("it has values for " + std::to_string(tuples) + what + ", and " +
                 std::to_string(there) + what);
     }
 
-    /// Cells of a list as readCells() has it.
-    static std::size_t countCells(const std::vector<std::int64_t>& cells) {
-        std::size_t count = 0;
-        for (std::size_t at = 0; at < cells.size(); ++count) {
-            if (cells[at] < 0) damaged("a cell has less than 0 corners");
-            if (static_cast<std::size_t>(cells[at]) >= cells.size() - at) {
-                damaged("its list of cells breaks off");
-            }
-            at += 1 + static_cast<std::size_t>(cells[at]);
+    /// Calls f(corners) for each cell of a list as readCells() has it.
+    template <class F>
+    static void forEachCell(std::span<const std::int64_t> cells, const F& f) {
+        while (!cells.empty()) {
+            if (cells[0] < 0) damaged("a cell has less than 0 corners");
+            const auto corners = static_cast<std::uint64_t>(cells[0]);
+            if (corners >= cells.size()) damaged("its list of cells breaks off");
+            f(cells.subspan(1, corners));
+            cells = cells.subspan(1 + corners);
         }
-        return count;
     }
 
     /// Refuses a second section of a surface.
@@ -197,26 +203,23 @@ private:
     }
 
     void decodePolygons(ByteSource& line) {
-        requireFirst(file_.mesh.triangles.empty(), "POLYGONS");
+        requireFirst(polygons_ == 0, "POLYGONS");
         ByteSource counts = line;
         const std::int64_t count = counts.integerWord("the number of polygons");
-        const std::vector<std::int64_t> cells = readCells(line);
-        for (std::size_t i = 0; i < cells.size(); i += 4) {
-            if (cells[i] != 3) refusePolygon(cells[i]);
-            if (i + 4 > cells.size()) damaged("its list of polygons breaks off");
-            file_.mesh.triangles.push_back({cells[i + 1], cells[i + 2], cells[i + 3]});
-        }
+        forEachCell(readCells(line), [&](std::span<const std::int64_t> corners) {
+            faces_.add(corners);
+            ++polygons_;
+        });
         last_ = {"polygons", count - (hasOffsets_ ? 1 : 0),
                  4 * (isBinary_ ? std::int64_t{sizeof(std::int32_t)} : 1)};
-        const std::int64_t there = std::ssize(cells) / 4 + (hasOffsets_ && count > 0 ? 1 : 0);
+        const std::int64_t there = polygons_ + (hasOffsets_ && count > 0 ? 1 : 0);
         if (there != count) {
             damaged("it counts " + std::to_string(count) + " polygons, and its list has " +
                     std::to_string(there));
         }
     }
 
-    /// Cells as a list of: number of corners, corners. Stops being sound at the first polygon
-    /// that is not a triangle.
+    /// Cells as a list of: number of corners, corners.
     std::vector<std::int64_t> readCells(ByteSource& line) {
         const std::int64_t first = line.integerWord("the number of cells");
         const std::int64_t second = line.integerWord("the size of the cells");
@@ -439,14 +442,15 @@ private:
     ByteSource source_;
     MeshFile file_;
     Counted last_{"sections", 0, 1};  ///< the numbers before this place
-    bool keepsArrays_;
+    Faces faces_;
+    bool keepsArrays_, keepsFaults_;
     FrameMarks marks_, fieldMarks_;  ///< of the header, and of field data
     bool isBinary_ = false;
-    bool hasOffsets_ = false;   ///< cells as offsets and connectivity (version 5)
-    bool isPointData_ = false;  ///< the attributes at this place are of points
-    bool isCellData_ = false;   ///< or of cells
-    std::int64_t cells_ = 0;    ///< vertices and lines, which are cells too
-    std::int64_t tuples_ = 0;   ///< tuples of each attribute array at this place
+    bool hasOffsets_ = false;                ///< cells as offsets and connectivity (version 5)
+    bool isPointData_ = false;               ///< the attributes at this place are of points
+    bool isCellData_ = false;                ///< or of cells
+    std::int64_t polygons_ = 0, lines_ = 0;  ///< lines and vertices, which are cells too
+    std::int64_t tuples_ = 0;                ///< tuples of each attribute array at this place
 };
 
 /// A name as one word: what could end it is "%20", in hexadecimal digits.

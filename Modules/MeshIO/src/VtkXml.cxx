@@ -8,10 +8,12 @@
 #include <deque>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "Bytes.h"
 #include "Counts.h"
+#include "Faces.h"
 #include "VtkFiles.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
@@ -29,6 +31,11 @@ std::int64_t componentsOf(const XmlAttributes& attributes) {
 struct DataArray {
     XmlAttributes attributes;  ///< empty: the file has no such array
     std::string text;          ///< inline data
+};
+
+struct Cells {
+    std::string_view element, count;  ///< their names
+    DataArray corners{}, ends{};
 };
 
 /// Collects the arrays that make up the surface, up to the appended data.
@@ -57,7 +64,8 @@ public:
 
     std::string_view behind;  ///< what follows the document
     XmlAttributes file, piece, appended;
-    DataArray points, normals, connectivity, offsets, frame, slicerSpace;
+    DataArray points, normals, frame, slicerSpace;
+    Cells polygons{"Polys", "NumberOfPolys"}, strips{"Strips", "NumberOfStrips"};
     std::deque<DataArray> values;  ///< at points, where they are kept
     std::deque<DataArray> others;  ///< that are not: of points and of cells
     std::vector<bool> areOfCells;  ///< of `others`
@@ -78,9 +86,6 @@ private:
     void startPiece(const XmlAttributes& attributes) {
         if (!piece.empty()) unsupported("it holds several pieces", "save it as one piece");
         piece = attributes;
-        if (attributeOr(attributes, "NumberOfStrips", "0") != "0") {
-            refuseStrips();
-        }
     }
 
     void startArray(const XmlAttributes& attributes) {
@@ -88,8 +93,11 @@ private:
         const std::string name = attributeOr(attributes, "Name", "");
         array_ = nullptr;
         if (parent == "Points") array_ = &points;
-        if (parent == "Polys" && name == "connectivity") array_ = &connectivity;
-        if (parent == "Polys" && name == "offsets") array_ = &offsets;
+        for (Cells* const cells : {&polygons, &strips}) {
+            if (parent != cells->element) continue;
+            if (name == "connectivity") array_ = &cells->corners;
+            if (name == "offsets") array_ = &cells->ends;
+        }
         if (parent == "PointData" && !normalsName_.empty() && name == normalsName_) {
             array_ = &normals;
         } else if (parent == "PointData" && keepsArrays_ && mayBeKept(attributes)) {
@@ -380,18 +388,37 @@ std::int64_t pieceCount(const VtpHandler& handler, std::string_view name) {
     return toInteger(requireAttribute(handler.piece, name), name);
 }
 
-void decodeTriangles(const VtpHandler& handler, ArrayReader& reader, TriangleMesh& mesh) {
-    const std::int64_t count = pieceCount(handler, "NumberOfPolys");
-    const auto offsets = reader.numbers<std::int64_t>(handler.offsets, count, "polygon offsets");
-    for (std::int64_t i = 0; i < count; ++i) {
-        if (offsets[i] < 3 * i) damaged("its polygon offsets do not grow");
-        if (offsets[i] != 3 * i + 3) refusePolygon(offsets[i] - 3 * i);
+std::int64_t countOr0(const VtpHandler& handler, std::string_view name) {
+    return toInteger(attributeOr(handler.piece, name, "0"), name);
+}
+
+/// Calls f(corners) for each cell.
+template <class F>
+void forEachCell(const Cells& cells, std::int64_t count, ArrayReader& reader, const F& f) {
+    const auto ends = reader.numbers<std::int64_t>(cells.ends, count, "polygon offsets");
+    std::int64_t begin = 0;
+    for (const std::int64_t end : ends) {
+        if (end < begin) damaged("its polygon offsets do not grow");
+        begin = end;
     }
-    const auto corners = reader.numbers<VertexId>(handler.connectivity, 3 * count, "polygons");
-    mesh.triangles.resize(count);
-    for (std::int64_t i = 0; i < count; ++i) {
-        mesh.triangles[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+    const auto corners = reader.numbers<VertexId>(cells.corners, begin, "polygons");
+    begin = 0;
+    for (const std::int64_t end : ends) {
+        f(std::span(corners).subspan(begin, end - begin));
+        begin = end;
     }
+}
+
+Faces decodeFaces(const VtpHandler& handler, ArrayReader& reader) {
+    Faces faces;
+    const std::int64_t polygons = pieceCount(handler, handler.polygons.count);
+    forEachCell(handler.polygons, polygons, reader,
+                [&](std::span<const VertexId> corners) { faces.add(corners); });
+    const std::int64_t strips = countOr0(handler, handler.strips.count);
+    if (strips == 0) return faces;
+    forEachCell(handler.strips, strips, reader,
+                [&](std::span<const VertexId> corners) { faces.addStrip(corners); });
+    return faces;
 }
 
 /// Arrays of places need not say their components; where they do, these are x, y and z.
@@ -562,8 +589,9 @@ void passOver(const VtpHandler& handler, const ArrayReader& reader, bool keepsAr
     constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max(), kMostCells = kMost / 16,
                           kMostValues = kMost / 4;
     std::int64_t cells = 0;
-    for (const char* const kind : {"NumberOfVerts", "NumberOfLines", "NumberOfPolys"}) {
-        const std::int64_t count = toInteger(attributeOr(handler.piece, kind, "0"), kind);
+    for (const char* const kind :
+         {"NumberOfVerts", "NumberOfLines", "NumberOfPolys", "NumberOfStrips"}) {
+        const std::int64_t count = countOr0(handler, kind);
         requireRoom(kind, count, 1, kMostCells);
         cells += count;
     }
@@ -610,7 +638,7 @@ MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
         }
     }
     passOver(handler, reader, options.keepsPointArrays, file);
-    decodeTriangles(handler, reader, file.mesh);
+    Faces faces = decodeFaces(handler, reader);
     FrameMarks marks(options);
     for (const DataArray* const field : {&handler.frame, &handler.slicerSpace}) {
         if (field->attributes.empty()) continue;
@@ -618,10 +646,13 @@ MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
     }
     file.frame = marks.frame();
     requireNoMore(
-        {"triangles", std::ssize(file.mesh.triangles), std::ssize(bytes)},
+        {"triangles", faces.count(), std::ssize(bytes)},
         handler.isDone() ? behindAppended(appended, reader.appendedEnd()) : handler.behind,
         reader.unpacking.warnings);
     file.warnings = std::move(reader.unpacking.warnings);
+    std::move(faces).moveTo(file, options.keepsFaults);
+    noteLinesLeftOut(countOr0(handler, "NumberOfVerts") + countOr0(handler, "NumberOfLines"),
+                     file.warnings);
     return file;
 }
 

@@ -265,9 +265,14 @@ TEST(Counts, OfVtkCellDataAreThoseOfItsCells) {
         return text + "\n";
     };
     const std::string one = head + polygon, four = head + others + polygon;
-    for (const std::string& good : {one + scalars(1), one + field(1, 1), four + scalars(4),
-                                    four + field(4, 4), one + "POINT_DATA 3\n" + scalars(1)}) {
+    for (const std::string& good :
+         {one + scalars(1), one + field(1, 1), one + "POINT_DATA 3\n" + scalars(1)}) {
         EXPECT_EQ(codesOf(decoded(good, "a.vtk")), Codes{});
+    }
+    for (const std::string& good : {four + scalars(4), four + field(4, 4)}) {
+        const MeshFile file = decoded(good, "a.vtk");
+        EXPECT_EQ(codesOf(file), Codes{"lines-left-out"});
+        EXPECT_EQ(file.warnings[0].text, "3 lines or points beside the polygons of the surface were left out");
     }
     const auto refused = [](const std::string& vtk, std::string_view words) {
         EXPECT_NE(fault(vtk, "a.vtk").find(words), std::string::npos) << fault(vtk, "a.vtk");
@@ -320,7 +325,7 @@ TEST(Counts, OfPlyEachElementAndPropertyIsThereOnce) {
 }
 
 TEST(Counts, OfVtpArraysAreThoseOfItsPointsAndCells) {
-    EXPECT_EQ(codesOf(decoded(vtpWith("1 2 3", "1 2 3 4"), "a.vtp")), Codes{});
+    EXPECT_EQ(codesOf(decoded(vtpWith("1 2 3", "1 2 3 4"), "a.vtp")), Codes{"lines-left-out"});
     for (const char* const other : {"1 2", "1 2 3 4 5", ""}) {
         EXPECT_NE(fault(vtpWith(other, "1 2 3 4"), "a.vtp").find("values, must hold 3"),
                   std::string::npos);

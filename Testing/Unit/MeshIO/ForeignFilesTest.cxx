@@ -121,29 +121,6 @@ TEST(PlyFile, BigEndianFloatsAreRead) {
     EXPECT_EQ(file.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
 }
 
-TEST(Polygons, AreRefusedWithAWayOut) {
-    const std::string quad = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
-    const std::string plyHead =
-        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
-        "float z\n"
-        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    const std::pair<const char*, std::string> files[] = {
-        {"a.off", "OFF\n4 1 0\n" + quad + "4 0 1 2 3\n"},
-        {"a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"},
-        {"a.ply", plyHead + quad + "4 0 1 2 3\n"},
-        {"a.vtk", "# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n" + quad +
-                      "POLYGONS 1 5\n4 0 1 2 3\n"},
-    };
-    for (const auto& [name, bytes] : files) {
-        const std::string message =
-            messageOf<FileError>([&name = name, &bytes = bytes] { decoded(bytes, name); });
-        EXPECT_EQ(
-            message,
-            std::string(name) +
-                ": it has a polygon of 4 corners; only triangles are read: triangulate it first");
-    }
-}
-
 void put(const std::filesystem::path& file, const std::string& bytes) {
     std::filesystem::create_directories(file.parent_path());
     std::ofstream(file, std::ios::binary) << bytes;
@@ -192,16 +169,6 @@ TEST(FreeSurferFile, NoFooterOrAnInvalidOneGivesNoVolume) {
     std::string invalid = std::string("\0\0\0\x14", 4) + kGeometry;
     invalid.replace(invalid.find("valid = 1"), 9, "valid = 0");
     EXPECT_EQ(decoded(freeSurferBytes(invalid), "lh.pial").volume, std::nullopt);
-}
-
-TEST(FreeSurferFile, QuadrangleFilesAreNamedAsSuch) {
-    const std::string message = messageOf<FileError>([] {
-        decoded(
-            "\xFF\xFF\xFF"
-            "abc",
-            "lh.pial");
-    });
-    EXPECT_NE(message.find("mris_convert"), std::string::npos) << message;
 }
 
 TEST(GiftiFile, TextArraysAndColumnOrderAreRead) {

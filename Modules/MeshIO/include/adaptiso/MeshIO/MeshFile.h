@@ -92,8 +92,8 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
 
 struct MeshReadOptions {
     /// Reads what is wrong with the mesh too, for those who look for it: coordinates that are not
-    /// finite, triangles that name points which aren't there. Normals that are not one a point, or
-    /// not finite, are then left out.
+    /// finite, triangles and polygons that name points which aren't there. Normals that are not one
+    /// a point, or not finite, are then left out.
     bool keepsFaults = false;
     bool keepsPointArrays = false;  ///< else they are passed over
     /// The frame of the points, overriding the file's own; empty: as the file says.
@@ -131,8 +131,8 @@ struct MeshFile {
 ///
 /// Files are taken for hostile: only regular files are opened, no other file is opened on their
 /// word but for GIFTI's external data, plain files in the surface's own folder, and no count in
-/// them is believed beyond what the file's size can hold. Polygons with more than three corners and
-/// triangle strips are refused, not cut up. STL corners with equal coordinates become one vertex,
+/// them is believed beyond what the file's size can hold. Polygons and triangle strips are cut into
+/// triangles, with a warning (polygons-cut). STL corners with equal coordinates become one vertex,
 /// numbered by first use. OBJ normals are kept if no vertex has two. GIFTI and FreeSurfer files
 /// hold no normals.
 ///

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+
+namespace adaptiso::meshio {
+
+/// Faces as a file lists them. Polygons are cut into triangles once all points are there: files may
+/// list faces first.
+class Faces {
+public:
+    void reserve(std::size_t count) { triangles_.reserve(count); }
+
+    /// A triangle or a polygon. \throws FileError  fewer than 3 corners
+    void add(std::span<const VertexId> corners);
+
+    /// A triangle strip, whose every second triangle is turned round. Triangles that name a point
+    /// twice, by which strips are joined, are left out. \throws FileError  fewer than 3 corners
+    void addStrip(std::span<const VertexId> corners);
+
+    /// Faces added; a strip is one.
+    std::int64_t count() const { return count_; }
+
+    /// Moves the triangles to file.mesh, in the order of the file. Polygons are cut in the plane of
+    /// best fit through them, by triangulatePolygon(); a warning says how many were cut, and how
+    /// far their corners lie off these planes.
+    /// \pre    file.mesh has its points
+    /// \throws FileError  a polygon crosses itself, has no area, names a point twice or one that is
+    ///         not there (but for keepsFaults, where it is cut anyhow), or has too many corners
+    void moveTo(MeshFile& file, bool keepsFaults) &&;
+
+private:
+    struct Polygon {
+        std::int64_t number;       ///< among the faces
+        std::size_t triangle;      ///< before which its own belong
+        std::size_t corner, size;  ///< in corners_
+    };
+
+    void requireCorners(std::span<const VertexId> corners) const;
+
+    std::vector<Triangle> triangles_;
+    std::vector<Polygon> polygons_;
+    std::vector<VertexId> corners_;  ///< of all polygons
+    std::int64_t count_ = 0, strips_ = 0, stripTriangles_ = 0;
+};
+
+/// Says that lines and points beside the faces were left out, where there are some.
+void noteLinesLeftOut(std::int64_t count, std::vector<Warning>& warnings);
+
+}  // namespace adaptiso::meshio
