@@ -90,13 +90,16 @@ public:
         // all are done or would have no more. A triangle of a surface takes some 60, many hundreds
         // where one of the two is far coarser.
         constexpr std::int64_t kFirst = 2048, kGrowth = 8, kOfEach = 512, kLeast = 1 << 22;
-        const std::int64_t budget =
-            kLeast + kOfEach * (std::ssize(from_.triangles) + std::ssize(to_.mesh.triangles));
+        const std::int64_t count = std::ssize(from_.triangles);
+        const std::int64_t budget = kLeast + kOfEach * (count + std::ssize(to_.mesh.triangles));
         Bounds all;
         all.farthest = farthestVertex(far);
         all.left.resize(from_.triangles.size());
         std::iota(all.left.begin(), all.left.end(), 0);
-        for (std::int64_t each = kFirst, before = 0; !all.left.empty() && each > before;) {
+        const bool isInVain = isFirstInVain(kFirst, budget, all);
+        if (isInVain) spend(0, all);
+        for (std::int64_t each = kFirst, before = 0;
+             !isInVain && !all.left.empty() && each > before;) {
             spend(each, all);
             before = each;
             each = all.left.empty()
@@ -124,6 +127,19 @@ private:
         if (!far) return farthest;
         const FarPoint other = to_.farPoint(*far, corner.triangle, effort);
         return other.distance > farthest.distance ? other : farthest;
+    }
+
+    /// Whether an effort for each triangle would be more than a budget and leave many of them, by
+    /// some that are evenly spread.
+    bool isFirstInVain(std::int64_t each, std::int64_t budget, const Bounds& all) const {
+        constexpr std::int64_t kSome = 1024;
+        const std::int64_t count = std::ssize(all.left);
+        if (count < kSome || budget > each * count) return false;
+        Bounds some;
+        some.farthest = all.farthest;
+        for (std::int64_t n = 0; n < kSome; ++n) some.left.push_back(n * count / kSome);
+        spend(each, some);
+        return std::ssize(some.left) > kSome / 16 && some.effort / kSome > budget / count;
     }
 
     /// \param each  effort for each of the triangles that are left

@@ -143,6 +143,7 @@ double PieceSearch::bound(const std::array<Corner, 3>& triangle, std::int64_t& e
     open_.clear();
     areAllNearby_ = false;
     Piece whole{triangle};
+    if (effort == 0) return boundOf(whole, kUnbounded);
     for (Corner& corner : whole.corners) {
         if (corner.squared > enough_) corner = cornerAt(corner.point, corner.triangle);
     }

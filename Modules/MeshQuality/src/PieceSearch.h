@@ -71,7 +71,8 @@ public:
     double squaredEnough() const { return enough_; }
 
     /// Bounds the squared distance of all points of a triangle.
-    /// \param effort  triangles that may be looked at; shrinks by those that were
+    /// \param effort  triangles that may be looked at; shrinks by those that were. With 0 it is
+    ///                bounded by those near its corners, uncut
     /// \return more than squaredEnough() only where that does not suffice
     double bound(const std::array<Corner, 3>& triangle, std::int64_t& effort);
 

@@ -487,6 +487,25 @@ TEST(NearestPlaces, OfTrianglesThatAllCrossSomeAreExactAndStandForOthers) {
     EXPECT_EQ(others.size(), standIns.size());
 }
 
+// More points than the budget of all allows cost no more than it: the table has 400,000 for a
+// direction of a comparison, and each vertex.
+TEST(NearestPlaces, OfManyPointsAmongTrianglesThatAllCrossAreWithinOneBudget) {
+    constexpr std::int64_t kTriangles = 2000, kPoints = 400'000, kMostLooks = 24'000'000;
+    const TriangleMesh mesh = crossingAtOnePoint(kTriangles);
+    const AabbTree tree(mesh);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> place(-1, 1);
+    std::vector<Vec3> points(kPoints);
+    for (Vec3& p : points) p = {place(random), place(random), place(random)};
+    std::vector<StandIn> standIns;
+    findNearestPlaces(
+        mesh, tree, kPoints, [&](std::int64_t n) { return points[n]; },
+        [](std::int64_t, const ClosestPoint&) {}, true, &standIns);
+    const std::int64_t measured = kPoints - std::ssize(standIns);
+    EXPECT_LE(measured * kTriangles, kMostLooks);  // each has all triangles looked at
+    EXPECT_GT(measured, 5'000);
+}
+
 TEST(SurfaceDistance, OfTrianglesThatAllCrossIsThatOfSomeSamples) {
     const TriangleMesh mesh = crossingAtOnePoint(3000);
     // from the mesh to itself rough distances were as large as the mesh

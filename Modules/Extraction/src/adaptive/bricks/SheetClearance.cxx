@@ -56,12 +56,12 @@ public:
         };
         const auto lookAt = [&](std::span<const Place> others) {
             // thousands, as where all triangles share a vertex: some of them tell as much
-            constexpr std::size_t kMany = 1024;
+            constexpr std::size_t kMany = 1024, kSome = 256;
             if (others.size() <= kMany) {
                 for (const Place& other : others) lookAtOne(other);
                 return;
             }
-            const std::size_t step = others.size() / kMany + 1;
+            const std::size_t step = others.size() / kSome + 1;
             for (std::size_t n = 0; n < others.size(); n += step) lookAtOne(others[n]);
         };
         for (int n = 0; n < 9; ++n) {

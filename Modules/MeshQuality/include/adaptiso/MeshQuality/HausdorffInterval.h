@@ -47,7 +47,10 @@ struct HausdorffReport {
 /// do: open, crossing, without area.
 ///
 /// Where very many triangles lie about as far from each point, as where thousands cross each other,
-/// the search ends early: the interval is wider then (isComplete is false), and holds.
+/// the search ends early: the interval is wider then (isComplete is false), and holds. The budget
+/// is 2^22 triangles to look at, and 512 for each of both surfaces; where some triangles, evenly
+/// spread, show that it would not do, the others are bounded by the triangles nearest to their
+/// vertices.
 /// \pre  both have a triangle; triangles name points that are there and finite
 ///       \throws InvalidInput otherwise
 /// Cost: O((T + cuts) log T), in parallel; 40 bytes a vertex besides an AabbTree. The same surfaces
