@@ -243,22 +243,29 @@ private:
             place(nullptr, first, array_.chunk);
             return;
         }
+        const Bytes samples = readChunk(*file, offset, size, first);
+        lookBeyond(samples.data(), first);
+        place(samples.data(), first, array_.chunk);
+    }
+
+    /// The samples of a chunk that is there.
+    Bytes readChunk(const ZarrFile& file, std::uint64_t offset, std::uint64_t size,
+                    const ZarrIndex& first) const {
         if (size > zarrPackedLimit(chunkBytes())) {
             refuse(
-                file->path(),
+                file.path(),
                 fmt::format("holds {} bytes, more than a chunk of {} can take", size, chunkBytes()),
                 "get the dataset again");
         }
         Bytes bytes(static_cast<std::size_t>(size));
-        file->read(offset, bytes.data(), bytes.size());
-        bytes = array_.isN5 ? unpackN5Block(std::move(bytes), array_, first, file->path())
+        file.read(offset, bytes.data(), bytes.size());
+        bytes = array_.isN5 ? unpackN5Block(std::move(bytes), array_, first, file.path())
                             : unpackZarrChunk(std::move(bytes), array_.encoding.codecs,
-                                              chunkBytes(), file->path());
+                                              chunkBytes(), file.path());
         if (array_.encoding.byteOrder != std::endian::native) {
             swapBytes(bytes.data(), bytes.size(), sampleBytes_);
         }
-        lookBeyond(bytes.data(), first);
-        place(bytes.data(), first, array_.chunk);
+        return bytes;
     }
 
     /// Writers pad chunks at the image's end with one value.
@@ -335,19 +342,26 @@ private:
                 return;
             }
         }
+        bool isInPart = true;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto [begin, end] = within(axis, at, array_.chunk);
-            if (begin >= end) return;
+            isInPart = isInPart && begin < end;
         }
-        ++chunks_;
+        // of the whole image, those that are in no part of it lie beyond its shape
+        if (!isInPart && (!isWhole_ || hasMoreBeyond_)) return;
+        chunks_ += isInPart ? 1 : 0;
         constexpr std::uint64_t kNone = ~std::uint64_t{0};
         const bool isThere = !(index[2 * number] == kNone && index[2 * number + 1] == kNone);
-        if (!isThere) return addChunk(std::nullopt, 0, 0, at);
+        if (!isThere) {
+            if (isInPart) addChunk(std::nullopt, 0, 0, at);
+            return;
+        }
         const std::uint64_t offset = index[2 * number], size = index[2 * number + 1];
         if (offset > file->size() || size > file->size() - offset) {
             refuse(file->path(), "is damaged: its index leads out of it", "get the dataset again");
         }
-        addChunk(file, offset, size, at);
+        if (isInPart) return addChunk(file, offset, size, at);
+        lookBeyond(readChunk(*file, offset, size, at).data(), at);
     }
 
     /// Offset and size of each inner chunk.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -112,10 +113,12 @@ TEST_F(ZarrTest, KeysAreAsTheMetadataSay) {
     expectValues(readVolume(root_));
 }
 
-/// One shard of 2 x 2 x 2 chunks of side 2 each: 4 a side, twice in each direction.
-TEST_F(ZarrTest, ShardsAreReadWithTheirIndexAtEitherEndAndHoles) {
-    for (const bool isAtEnd : {true, false}) {
-        SCOPED_TRACE(isAtEnd ? "end" : "start");
+/// Shards of 2 x 2 x 2 chunks of side 2 each: 4 a side, twice in each direction. The first chunk is
+/// left out.
+class ZarrShardsTest : public ZarrFolder {
+protected:
+    /// \param change  of the samples of the chunk at x, y, z
+    void putShards(bool isAtEnd, const std::function<Text(const Text&, int, int, int)>& change) {
         fs::remove_all(root_);
         put("zarr.json",
             metadata3(R"([{"name": "sharding_indexed", "configuration": {"chunk_shape": [2, 2, 2],
@@ -134,12 +137,12 @@ TEST_F(ZarrTest, ShardsAreReadWithTheirIndexAtEitherEndAndHoles) {
             for (int inner = 0; inner < 8; ++inner) {
                 const int x = 2 * sx + (inner & 1), y = 2 * sy + (inner >> 1 & 1),
                           z = 2 * sz + (inner >> 2);
-                if (x == 0 && y == 0 && z == 0) {  // left out
+                if (x == 0 && y == 0 && z == 0) {
                     add(~std::uint64_t{0});
                     add(~std::uint64_t{0});
                     continue;
                 }
-                const Text packed = zstdOf(chunkAt(x, y, z, false, false, 2));
+                const Text packed = zstdOf(change(chunkAt(x, y, z, false, false, 2), x, y, z));
                 add(begin + data.size());
                 add(packed.size());
                 data += packed;
@@ -147,6 +150,13 @@ TEST_F(ZarrTest, ShardsAreReadWithTheirIndexAtEitherEndAndHoles) {
             put("c/" + std::to_string(sz) + "/" + std::to_string(sy) + "/" + std::to_string(sx),
                 isAtEnd ? data + withSum(index) : withSum(index) + data);
         }
+    }
+};
+
+TEST_F(ZarrShardsTest, AreReadWithTheirIndexAtEitherEndAndHoles) {
+    for (const bool isAtEnd : {true, false}) {
+        SCOPED_TRACE(isAtEnd ? "end" : "start");
+        putShards(isAtEnd, [](const Text& chunk, int, int, int) { return chunk; });
         const ReadVolume read = readVolume(root_);
         const auto view = read.volume.view().as<std::int16_t>();
         for (int z = 0; z < kZ; ++z) {
@@ -162,6 +172,24 @@ TEST_F(ZarrTest, ShardsAreReadWithTheirIndexAtEitherEndAndHoles) {
             << read.warnings.back().text;
         expectRefused("1 of its 36 chunks are not there", {.refusesMissingChunks = true});
     }
+}
+
+/// 5 samples along z are three chunks; shards have room for a fourth.
+TEST_F(ZarrShardsTest, ValuesOfChunksWhollyBeyondTheShapeAreNamed) {
+    const auto mentionsBeyond = [&](int changed) {
+        putShards(true, [&](Text chunk, int x, int y, int z) {
+            if (x == 1 && y == 2 && z == changed) chunk.back() = 8;
+            return chunk;
+        });
+        const ReadVolume read = readVolume(root_);
+        return std::ranges::any_of(read.warnings, [](const Warning& warning) {
+            return warning.code == "trailing-bytes" &&
+                   warning.text.find("beyond the shape that its metadata state (5 x 6 x 7)") !=
+                       std::string::npos;
+        });
+    };
+    EXPECT_FALSE(mentionsBeyond(-1));  // 7 again and again
+    EXPECT_TRUE(mentionsBeyond(3));
 }
 
 TEST_F(ZarrTest, IndicesOfAxesThatAreNotThereAreRefused) {
