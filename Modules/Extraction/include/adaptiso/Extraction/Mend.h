@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "adaptiso/Core/Progress.h"
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso {
+
+/// Aims of mend(). Lengths are in the mesh's own unit, which need not be the millimetre.
+struct MendOptions {
+    /// Bound of the distance between input and result, both ways, but for what MendStatistics
+    /// lists. Empty: kPartOfDiagonal of the diagonal of the mesh's box. \pre > 0, at least 1e-6 of
+    /// the diagonal
+    std::optional<double> maxErrorMm;
+    /// Widest hole to close: the diagonal of the box around what closes it. Empty: kHoleOfDiagonal
+    /// of the mesh's diagonal. \pre >= 0
+    std::optional<double> maxHoleMm;
+    bool leavesHolesOpen = false;  ///< wider holes stay open; otherwise they are refused
+    ProgressCallback progress;     ///< called as the work goes on; may be empty
+
+    static constexpr double kPartOfDiagonal = 0.002, kHoleOfDiagonal = 0.05;
+};
+
+/// A stretch of surface that the bound does not hold for.
+struct MendedPlace {
+    Vec3 middleMm;      ///< of its box
+    double spanMm = 0;  ///< diagonal of its box
+    double areaMm2 = 0;
+    std::int64_t triangles = 0;  ///< pieces of triangles that make it up
+};
+
+/// What mend() found, what it changed, and the distances proved for the result.
+struct MendStatistics {
+    bool wasSound = false;  ///< the result is the input
+
+    // found in the input
+    std::int64_t degenerateTriangles = 0;  ///< without area: dropped
+    std::int64_t duplicateTriangles = 0;   ///< on the corners of another: dropped
+    std::int64_t mergedPoints = 0;         ///< of borders, at the place of another: merged
+    std::int64_t flippedTriangles = 0;     ///< faced the other way than their surface
+    std::int64_t borderEdges = 0;          ///< in one triangle
+    std::int64_t badEdges = 0;     ///< in three triangles or more, or between two of a Moebius band
+    std::int64_t badVertices = 0;  ///< that join triangles by themselves alone
+    std::int64_t crossingTriangles = 0;  ///< that cross others, or lie near too many to be tested
+
+    // done
+    double latticeMm = 0;               ///< spacing of the lattice of new surface; 0: none was made
+    std::int64_t cells = 0;             ///< of the lattice where surface is new
+    std::int64_t keptTriangles = 0;     ///< of the input, corners and all
+    std::int64_t cutTriangles = 0;      ///< of the input, of which a part is kept
+    std::vector<MendedPlace> filled;    ///< new surface that closes holes, the widest first
+    std::vector<MendedPlace> leftOpen;  ///< holes wider than maxHoleMm
+    std::vector<MendedPlace> inner;     ///< of the input, within the solid: dropped, widest first
+    std::vector<MendedPlace> thin;      ///< of the input, too thin to be kept: dropped
+
+    // proved
+    double maxErrorMm = 0;  ///< that was asked for
+    double resultToInputMm =
+        0;  ///< no point of the result, `filled` aside, is farther from the input
+    /// No point of the input, `inner` and `thin` aside, is farther from the result. Triangles
+    /// without area are not asked.
+    double inputToResultMm = 0;
+};
+
+struct Mended {
+    TriangleMesh mesh;  ///< without normals, unless it is the input
+    MendStatistics statistics;
+};
+
+/// A closed, oriented 2-manifold that does not cross itself, made of any triangles: with holes,
+/// crossings, doubled or flipped parts, triangles that share no vertices.
+///
+/// The solid is where the winding number [Jacobson2013], summed by a tree of dipoles [Barill2018],
+/// is at least a half. Where the input is its border, and sound, it is kept to the bit. Around
+/// faults it is cut along the cells of a lattice, and the cells are filled by marching cubes of the
+/// winding number, whose vertices lie where lattice edges cross the input; on the cells' outer
+/// faces new surface ends in the very line along which the input was cut [Bischoff2005]. Cells are
+/// added where that line is not a single one, or does not part the winding numbers.
+///
+/// Every vertex of a sound input comes back; the mesh itself where nothing is to be mended.
+/// \pre  the mesh has a triangle with an area; indices are in range, coordinates finite
+///       \throws InvalidInput otherwise; where it encloses no volume; where a hole is wider than
+///       maxHoleMm; where it could not be mended within the bound
+/// Cost: O(T log T), and some 20 us for each cell; cells go with the area of what is mended over
+/// maxErrorMm squared. The same input gives the same bytes, whatever the number of threads.
+Mended mend(const TriangleMesh& mesh, const MendOptions& options = {});
+
+}  // namespace adaptiso

@@ -1,0 +1,252 @@
+#include "adaptiso/Extraction/Mend.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/Extraction/Components.h"
+#include "adaptiso/Extraction/Tiles.h"
+#include "adaptiso/MeshQuality/CrossingSearch.h"
+#include "adaptiso/MeshQuality/Topology.h"
+#include "mend/MendAssembly.h"
+#include "mend/MendDistances.h"
+#include "mend/MendInput.h"
+#include "mend/MendRegion.h"
+#include "mend/WindingField.h"
+
+namespace adaptiso {
+namespace {
+
+using detail::MendAssembly;
+using detail::MendInput;
+using detail::MendLattice;
+using detail::MendRegion;
+using detail::MendSource;
+
+/// Parts of 128 of the spacing that the lattice is shifted by: planes of the mesh, which often lie
+/// at round numbers, are rarely planes of the lattice.
+constexpr std::array<std::array<int, 3>, 4> kShifts{
+    {{47, 53, 37}, {75, 29, 61}, {19, 83, 101}, {91, 107, 23}}};
+constexpr int kMostRounds = 12;  ///< of one lattice
+
+std::string textOf(const Vec3& p) {
+    return "(" + formatShort(p.x) + ", " + formatShort(p.y) + ", " + formatShort(p.z) + ")";
+}
+
+double checkedBound(const MendOptions& options, double diagonal) {
+    const double bound = options.maxErrorMm.value_or(MendOptions::kPartOfDiagonal * diagonal);
+    if (!(bound > 0) || !std::isfinite(bound)) {
+        throw InvalidInput("mend: maxErrorMm must be more than 0");
+    }
+    if (bound < 1e-6 * diagonal) {
+        throw InvalidInput("mend: maxErrorMm is " + formatShort(bound) +
+                           ", less than a millionth of the mesh's diagonal");
+    }
+    if (options.maxHoleMm && !(*options.maxHoleMm >= 0)) {
+        throw InvalidInput("mend: maxHoleMm must not be negative");
+    }
+    return bound;
+}
+
+/// The largest power of 2 of which a cell's diagonal is within the bound.
+double spacingFor(double boundMm) {
+    return std::exp2(std::floor(std::log2(boundMm / std::sqrt(3.0))));
+}
+
+std::vector<TriangleView::Triangle> inShort(const TriangleMesh& mesh) {
+    std::vector<TriangleView::Triangle> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                             static_cast<std::uint32_t>(c)});
+    }
+    return triangles;
+}
+
+/// Cells in and around triangles of the result that cross others or have no area, where these are
+/// not all in the region. \param isSound  set to whether there is none such triangle
+std::vector<std::uint64_t> cellsOfFaults(const MendAssembly& assembly, const MendRegion& region,
+                                         bool& isSound) {
+    const auto triangles = inShort(assembly.mesh);
+    // the input's own were found apart
+    const auto isNew = [&](std::uint32_t t) { return assembly.source[t] != MendSource::Kept; };
+    const CrossingPairs crossing =
+        findCrossingPairs({assembly.mesh.points, triangles},
+                          [&](std::uint32_t a, std::uint32_t b) { return isNew(a) || isNew(b); });
+    std::vector<std::uint32_t> faulty = crossing.undecided;
+    for (const auto& pair : crossing.pairs) faulty.insert(faulty.end(), pair.begin(), pair.end());
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        if (isNew(t) && isDegenerate(assembly.mesh, assembly.mesh.triangles[t])) {
+            faulty.push_back(t);
+        }
+    }
+    isSound = faulty.empty();
+    std::vector<std::uint64_t> cells;
+    const auto addAround = [&](const detail::LatticePosition& cell) {
+        for (int n = 0; n < 27; ++n) {
+            const detail::LatticePosition near{cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1,
+                                               cell[2] + n / 9 - 1};
+            if (!region.contains(near)) cells.push_back(detail::keyOf(near));
+        }
+    };
+    for (const std::uint32_t t : faulty) {
+        if (assembly.source[t] == MendSource::Moved || assembly.source[t] == MendSource::Filled) {
+            addAround(detail::positionOf(assembly.cell[t]));
+        } else if (assembly.source[t] == MendSource::Cut) {
+            region.forEachCellOf(cornersOf(assembly.mesh, t), addAround);
+        }
+    }
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return cells;
+}
+
+void dropTriangles(MendAssembly& assembly, const std::vector<std::uint8_t>& isDropped) {
+    std::size_t next = 0;
+    for (std::size_t t = 0; t < isDropped.size(); ++t) {
+        if (isDropped[t] != 0) continue;
+        assembly.mesh.triangles[next] = assembly.mesh.triangles[t];
+        assembly.source[next] = assembly.source[t];
+        assembly.cell[next] = assembly.cell[t];
+        ++next;
+    }
+    assembly.mesh.triangles.resize(next);
+    assembly.source.resize(next);
+    assembly.cell.resize(next);
+    assembly.mesh = withoutUnusedPoints(std::move(assembly.mesh));
+}
+
+/// Drops pieces that are new, in part at least, and no thicker than a cell: along sheets that bound
+/// no solid the winding number passes a half here and there.
+void dropCrumbs(MendAssembly& assembly, double spacingMm) {
+    struct Piece {
+        double volume = 0, area = 0;
+        bool hasNew = false;
+    };
+    const ComponentLabels labels = labelComponents(assembly.mesh);
+    const Vec3 reference = assembly.mesh.points.empty() ? Vec3{} : assembly.mesh.points[0];
+    std::vector<Piece> pieces(labels.count);
+    const auto pieceOf = [&](std::size_t t) {
+        return labels.ofVertex[assembly.mesh.triangles[t][0]];
+    };
+    for (std::size_t t = 0; t < assembly.source.size(); ++t) {
+        Piece& piece = pieces[pieceOf(t)];
+        const Corners c = cornersOf(assembly.mesh, static_cast<std::int64_t>(t));
+        piece.volume += dot(c[0] - reference, cross(c[1] - reference, c[2] - reference)) / 6;
+        piece.area += 0.5 * norm(areaVector2(c[0], c[1], c[2]));
+        piece.hasNew = piece.hasNew || assembly.source[t] == MendSource::Moved ||
+                       assembly.source[t] == MendSource::Filled;
+    }
+    std::vector<std::uint8_t> isDropped(assembly.source.size());
+    bool hasCrumbs = false;
+    for (std::size_t t = 0; t < isDropped.size(); ++t) {
+        const Piece& piece = pieces[pieceOf(t)];
+        // a plate's thickness; a ball's is three times as much
+        if (!piece.hasNew || 2 * std::abs(piece.volume) > spacingMm * piece.area) continue;
+        isDropped[t] = 1;
+        hasCrumbs = true;
+    }
+    if (hasCrumbs) dropTriangles(assembly, isDropped);
+}
+
+/// Lists the holes that were closed; refuses or opens those that are too wide.
+void judgeHoles(MendAssembly& assembly, double maxHoleMm, bool leavesOpen,
+                MendStatistics& statistics) {
+    std::vector<std::uint8_t> isFilled(assembly.source.size());
+    for (std::size_t t = 0; t < isFilled.size(); ++t) {
+        isFilled[t] = assembly.source[t] == MendSource::Filled ? 1 : 0;
+    }
+    std::vector<std::uint8_t> isOpened(assembly.source.size());
+    for (auto& [place, triangles] : detail::connectedPlaces(assembly.mesh, isFilled)) {
+        if (place.spanMm <= maxHoleMm) {
+            statistics.filled.push_back(place);
+            continue;
+        }
+        if (!leavesOpen) {
+            throw InvalidInput("mend: a hole near " + textOf(place.middleMm) + " is " +
+                               formatMeasure(place.spanMm) + " mm wide, more than maxHoleMm, " +
+                               formatMeasure(maxHoleMm) + " mm");
+        }
+        statistics.leftOpen.push_back(place);
+        for (const std::int64_t t : triangles) isOpened[t] = 1;
+    }
+    if (!statistics.leftOpen.empty()) dropTriangles(assembly, isOpened);
+}
+
+/// Grows the region until the result is sound.
+/// \return  false where no growing helps
+bool mendIn(MendRegion& region, const MendInput& input, const detail::WindingField& field,
+            const MendLattice& lattice, const ProgressCallback& progress, MendAssembly& assembly) {
+    for (int round = 0; round < kMostRounds; ++round) {
+        region.grow();
+        if (progress) progress("mend", (round + 1.0) / (kMostRounds + 1.0));
+        assembly = assemble(input, region, field, lattice);
+        if (!assembly.trouble.empty()) {
+            region.add(assembly.trouble);
+            continue;
+        }
+        bool isSound = false;
+        const std::vector<std::uint64_t> cells = cellsOfFaults(assembly, region, isSound);
+        if (isSound) return checkTopology(assembly.mesh).isWatertight();
+        if (cells.empty()) return false;
+        region.add(cells);
+    }
+    return false;
+}
+
+}  // namespace
+
+Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
+    if (mesh.triangles.empty()) throw InvalidInput("mend: the mesh has no triangle");
+    const double diagonal = norm(boundingBox(mesh).size());
+    Mended result;
+    MendStatistics& statistics = result.statistics;
+    statistics.maxErrorMm = checkedBound(options, diagonal);
+    const MendInput input = detail::prepareInput(mesh, statistics);
+    const AabbTree tree(input.mesh);
+    const detail::WindingField field(input.mesh, tree);
+    for (std::size_t attempt = 0; attempt < kShifts.size(); ++attempt) {
+        const MendLattice lattice(boundingBox(input.mesh), spacingFor(statistics.maxErrorMm),
+                                  kShifts[attempt]);
+        MendRegion region(input, tree, field, lattice);
+        region.addFaults();
+        MendAssembly assembly;
+        if (!mendIn(region, input, field, lattice, options.progress, assembly)) continue;
+        dropCrumbs(assembly, lattice.spacing());
+        if (assembly.mesh.triangles.empty()) {
+            throw InvalidInput("mend: the triangles enclose no volume");
+        }
+        statistics.cells = std::ssize(region.cells());
+        statistics.latticeMm = region.isEmpty() ? 0 : lattice.spacing();
+        statistics.keptTriangles = assembly.keptTriangles;
+        statistics.cutTriangles = assembly.cutTriangles;
+        if (region.isEmpty() && assembly.mesh.triangles.size() == mesh.triangles.size() &&
+            assembly.mesh.points.size() == mesh.points.size() &&
+            input.mesh.triangles == mesh.triangles) {
+            statistics.wasSound = true;
+            result.mesh = mesh;
+            return result;
+        }
+        findBridges(input, lattice, statistics.maxErrorMm, assembly);
+        judgeHoles(assembly, options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * diagonal),
+                   options.leavesHolesOpen, statistics);
+        detail::proveDistances(input, tree, field, region, lattice, assembly, statistics);
+        if (std::max(statistics.resultToInputMm, statistics.inputToResultMm) >
+            statistics.maxErrorMm) {
+            continue;
+        }
+        result.mesh = std::move(assembly.mesh);
+        if (options.progress) options.progress("mend", 1);
+        return result;
+    }
+    throw InvalidInput("mend: could not be mended within " + formatShort(statistics.maxErrorMm) +
+                       " mm");
+}
+
+}  // namespace adaptiso

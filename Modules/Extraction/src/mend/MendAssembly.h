@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "adaptiso/Core/TriangleMesh.h"
+#include "mend/MendInput.h"
+#include "mend/MendRegion.h"
+
+namespace adaptiso::detail {
+
+/// Where a triangle of the result comes from.
+enum class MendSource : std::uint8_t {
+    Kept,   ///< it is the input's
+    Cut,    ///< of what the region leaves of one
+    Moved,  ///< new, in a cell that the input passes
+    Filled  ///< new, where there was no surface
+};
+
+/// The input without the region, and new surface within it.
+struct MendAssembly {
+    TriangleMesh mesh;
+    std::vector<MendSource> source;   ///< of a triangle
+    std::vector<std::uint64_t> cell;  ///< of a new one; 0 for others
+    /// Of the input, outside of the region and not of the solid's border: parts of triangles, and
+    /// whose they are.
+    std::vector<Corners> inner;
+    std::vector<std::uint32_t> innerOf;
+    std::int64_t keptTriangles = 0, cutTriangles = 0;
+    /// Cells to add to the region where the input could not be cut: the rest says nothing then.
+    std::vector<std::uint64_t> trouble;
+};
+
+MendAssembly assemble(const MendInput& input, const MendRegion& region, const WindingField& field,
+                      const MendLattice& lattice);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,209 @@
+#include "mend/MendDistances.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/HausdorffInterval.h"
+#include "mend/NearnessProof.h"
+
+namespace adaptiso::detail {
+namespace {
+
+/// A part of a triangle of the input that is not in the result.
+struct LostPiece {
+    Corners corners;
+    std::uint32_t triangle;
+};
+
+/// The part of a convex polygon on one side of a plane across an axis.
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, int axis, double plane, double sign) {
+    std::vector<Vec3> kept;
+    for (std::size_t n = 0; n < polygon.size(); ++n) {
+        const Vec3 &a = polygon[n], &b = polygon[(n + 1) % polygon.size()];
+        const double heightA = sign * (a[axis] - plane), heightB = sign * (b[axis] - plane);
+        if (heightA >= 0) kept.push_back(a);
+        if ((heightA < 0) == (heightB < 0)) continue;
+        kept.push_back(a + heightA / (heightA - heightB) * (b - a));
+    }
+    return kept;
+}
+
+/// What the region holds of a triangle, but in cells with new surface: it lies within a cell's
+/// diagonal of that.
+void addInRegion(const MendInput& input, const MendRegion& region, const MendLattice& lattice,
+                 const std::vector<std::uint64_t>& cellsWithSurface, std::uint32_t triangle,
+                 std::vector<LostPiece>& pieces) {
+    const Corners corners = cornersOf(input.mesh, triangle);
+    region.forEachCellOf(corners, [&](const LatticePosition& cell) {
+        if (!region.contains(cell)) return;
+        if (std::binary_search(cellsWithSurface.begin(), cellsWithSurface.end(), keyOf(cell))) {
+            return;
+        }
+        const BoundingBox box = lattice.boxOf(cell, cell);
+        std::vector<Vec3> polygon(corners.begin(), corners.end());
+        for (int axis = 0; axis < 3; ++axis) {
+            polygon = clipped(polygon, axis, box.minimum[axis], 1);
+            polygon = clipped(polygon, axis, box.maximum[axis], -1);
+        }
+        for (std::size_t n = 2; n < polygon.size(); ++n) {
+            pieces.push_back({{polygon[0], polygon[n - 1], polygon[n]}, triangle});
+        }
+    });
+}
+
+/// What could not be proved to lie near the result: of one piece.
+struct FarPiece {
+    std::uint32_t triangle;
+    bool isInner;  ///< within the solid on both sides
+    std::vector<Corners> parts;
+};
+
+/// Places of what hangs together by points of the input.
+std::vector<MendedPlace> placesOf(const MendInput& input, const std::vector<FarPiece>& pieces,
+                                  bool areInner) {
+    struct Extent {
+        BoundingBox box = BoundingBox::empty();
+        double area = 0;
+        std::int64_t triangles = 0;
+    };
+    DisjointSets sets(std::ssize(input.mesh.points));
+    for (const FarPiece& piece : pieces) {
+        const auto& [a, b, c] = input.mesh.triangles[piece.triangle];
+        if (piece.isInner != areInner) continue;
+        sets.join(a, b);
+        sets.join(a, c);
+    }
+    std::map<std::int64_t, Extent> extents;
+    for (const FarPiece& piece : pieces) {
+        if (piece.isInner != areInner) continue;
+        Extent& extent = extents[sets.find(input.mesh.triangles[piece.triangle][0])];
+        for (const Corners& c : piece.parts) {
+            extent.box.add(boxOf(c));
+            extent.area += 0.5 * norm(areaVector2(c[0], c[1], c[2]));
+            ++extent.triangles;
+        }
+    }
+    std::vector<MendedPlace> places;
+    for (const auto& [set, extent] : extents) {
+        places.push_back(
+            {extent.box.middle(), norm(extent.box.size()), extent.area, extent.triangles});
+    }
+    std::stable_sort(places.begin(), places.end(), [](const MendedPlace& a, const MendedPlace& b) {
+        return a.spanMm > b.spanMm;
+    });
+    return places;
+}
+
+}  // namespace
+
+std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> connectedPlaces(
+    const TriangleMesh& mesh, const std::vector<std::uint8_t>& isMarked) {
+    DisjointSets sets(std::ssize(mesh.points));
+    for (std::size_t t = 0; t < isMarked.size(); ++t) {
+        if (isMarked[t] == 0) continue;
+        sets.join(mesh.triangles[t][0], mesh.triangles[t][1]);
+        sets.join(mesh.triangles[t][0], mesh.triangles[t][2]);
+    }
+    std::map<std::int64_t, std::vector<std::int64_t>> bySet;
+    for (std::size_t t = 0; t < isMarked.size(); ++t) {
+        if (isMarked[t] != 0) bySet[sets.find(mesh.triangles[t][0])].push_back(t);
+    }
+    std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> places;
+    for (auto& [set, triangles] : bySet) {
+        BoundingBox box = BoundingBox::empty();
+        MendedPlace place;
+        for (const std::int64_t t : triangles) {
+            const Corners c = cornersOf(mesh, t);
+            box.add(boxOf(c));
+            place.areaMm2 += 0.5 * norm(areaVector2(c[0], c[1], c[2]));
+        }
+        place.middleMm = box.middle();
+        place.spanMm = norm(box.size());
+        place.triangles = std::ssize(triangles);
+        places.emplace_back(place, std::move(triangles));
+    }
+    std::stable_sort(places.begin(), places.end(),
+                     [](const auto& a, const auto& b) { return a.first.spanMm > b.first.spanMm; });
+    return places;
+}
+
+void findBridges(const MendInput& input, const MendLattice& lattice, double boundMm,
+                 MendAssembly& assembly) {
+    const NearnessProof proof(input.mesh, boundMm);
+    parallelForPieces(std::ssize(assembly.source), 64, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            if (assembly.source[t] != MendSource::Filled) continue;
+            NearnessProof::Result found;
+            proof.prove(cornersOf(assembly.mesh, t), lattice.spacing() / 4, found);
+            if (found.others.empty()) assembly.source[t] = MendSource::Moved;
+        }
+    });
+}
+
+void proveDistances(const MendInput& input, const AabbTree& tree, const WindingField& field,
+                    const MendRegion& region, const MendLattice& lattice,
+                    const MendAssembly& assembly, MendStatistics& statistics) {
+    const double bound = statistics.maxErrorMm;
+    TriangleMesh moved;  // of the result, what is not the input's
+    moved.points = assembly.mesh.points;
+    for (std::size_t t = 0; t < assembly.source.size(); ++t) {
+        const bool isAsked =
+            assembly.source[t] == MendSource::Moved || assembly.source[t] == MendSource::Cut;
+        if (isAsked) moved.triangles.push_back(assembly.mesh.triangles[t]);
+    }
+    if (!moved.triangles.empty()) {
+        HausdorffOptions options;
+        options.isSymmetric = false;
+        options.limitMm = bound;
+        statistics.resultToInputMm = hausdorffDistance(moved, input.mesh, options).aToB.upperMm;
+    }
+    std::vector<LostPiece> pieces;
+    for (std::size_t n = 0; n < assembly.inner.size(); ++n) {
+        pieces.push_back({assembly.inner[n], assembly.innerOf[n]});
+    }
+    std::vector<std::uint32_t> touched;
+    for (const std::uint64_t cell : region.cells()) {
+        const LatticePosition at = positionOf(cell);
+        tree.forEachOverlap(lattice.boxOf(at, at), [&](std::int64_t t) {
+            touched.push_back(static_cast<std::uint32_t>(t));
+        });
+    }
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    std::vector<std::uint64_t> cells = assembly.cell;
+    std::sort(cells.begin(), cells.end());
+    for (const std::uint32_t t : touched) addInRegion(input, region, lattice, cells, t, pieces);
+    if (!touched.empty()) statistics.inputToResultMm = std::sqrt(3.0) * lattice.spacing();
+    if (pieces.empty()) return;
+    const NearnessProof proof(assembly.mesh, bound);
+    std::vector<NearnessProof::Result> proved(pieces.size());
+    std::vector<std::uint8_t> isInner(pieces.size());
+    parallelForPieces(std::ssize(pieces), 64, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
+            const Corners& c = pieces[n].corners;
+            if (n < std::ssize(assembly.inner)) {
+                proved[n].others.push_back(c);  // dropped as a whole, however near
+            } else {
+                proof.prove(c, lattice.spacing() / 4, proved[n]);
+            }
+            if (proved[n].others.empty()) continue;
+            isInner[n] =
+                field.at(1.0 / 3 * (c[0] + c[1] + c[2]), std::int64_t{pieces[n].triangle}) >= 1 ? 1
+                                                                                                : 0;
+        }
+    });
+    std::vector<FarPiece> far;
+    for (std::size_t n = 0; n < proved.size(); ++n) {
+        statistics.inputToResultMm = std::max(statistics.inputToResultMm, proved[n].upperMm);
+        if (proved[n].others.empty()) continue;
+        far.push_back({pieces[n].triangle, isInner[n] != 0, std::move(proved[n].others)});
+    }
+    statistics.inner = placesOf(input, far, true);
+    statistics.thin = placesOf(input, far, false);
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "mend/MendAssembly.h"
+
+namespace adaptiso::detail {
+
+/// Pieces that marked triangles make up, hanging together by points, the widest first; and their
+/// triangles.
+std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> connectedPlaces(
+    const TriangleMesh& mesh, const std::vector<std::uint8_t>& isMarked);
+
+/// Takes what lies within the bound of the input, as a whole, for moved rather than filled.
+void findBridges(const MendInput& input, const MendLattice& lattice, double boundMm,
+                 MendAssembly& assembly);
+
+/// Encloses both distances, and lists what of the input lies farther from the result than the bound
+/// (statistics.maxErrorMm).
+void proveDistances(const MendInput& input, const AabbTree& tree, const WindingField& field,
+                    const MendRegion& region, const MendLattice& lattice,
+                    const MendAssembly& assembly, MendStatistics& statistics);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,393 @@
+#include "mend/MendInput.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <string>
+#include <tuple>
+
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/MeshQuality/CrossingSearch.h"
+#include "adaptiso/MeshQuality/InsideTest.h"
+#include "repair/FlatTriangles.h"
+
+namespace adaptiso::detail {
+namespace {
+
+/// How many triangles each edge has.
+std::vector<std::int64_t> edgeUses(const MendInput& input) {
+    std::vector<std::int64_t> uses(input.edges.size());
+    for (const auto& edges : input.edgeOf) {
+        for (const std::uint32_t e : edges) ++uses[e];
+    }
+    return uses;
+}
+
+void requireMendable(const TriangleMesh& mesh) {
+    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+        for (const VertexId v : mesh.triangles[n]) {
+            if (v < 0 || v >= std::ssize(mesh.points)) {
+                throw InvalidInput("mend: triangle " + std::to_string(n) + " names point " +
+                                   std::to_string(v) + " of " + std::to_string(mesh.points.size()));
+            }
+            if (!isFinite(mesh.points[v])) {
+                throw InvalidInput("mend: point " + std::to_string(v) + " is not finite");
+            }
+        }
+    }
+    if (mesh.points.size() > 0x7FFFFFFF || mesh.triangles.size() > 0x7FFFFFFF / 3) {
+        throw InvalidInput("mend: more than 2^31 points or edges");
+    }
+}
+
+/// Number of the first point at the place of each.
+std::vector<VertexId> placesOf(const std::vector<Vec3>& points) {
+    std::vector<VertexId> order(points.size()), place(points.size());
+    std::iota(order.begin(), order.end(), VertexId{0});
+    std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
+        const Vec3 &p = points[a], &q = points[b];
+        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+    });
+    for (std::size_t n = 0; n < order.size(); ++n) {
+        const bool isSame = n > 0 && points[order[n]] == points[order[n - 1]];
+        place[order[n]] = isSame ? place[order[n - 1]] : order[n];
+    }
+    return place;
+}
+
+/// Points of borders become the first one at their place.
+std::int64_t mergeBorderPoints(MendInput& input) {
+    const std::vector<std::int64_t> uses = edgeUses(input);
+    std::vector<std::uint8_t> isOnBorder(input.mesh.points.size());
+    for (std::size_t e = 0; e < uses.size(); ++e) {
+        if (uses[e] == 1) isOnBorder[input.edges[e].a] = isOnBorder[input.edges[e].b] = 1;
+    }
+    const std::vector<VertexId> place = placesOf(input.mesh.points);
+    std::vector<VertexId> first(place.size(), -1), becomes(place.size());
+    std::int64_t merged = 0;
+    for (std::size_t v = 0; v < place.size(); ++v) {
+        becomes[v] = static_cast<VertexId>(v);
+        if (isOnBorder[v] == 0) continue;
+        VertexId& of = first[place[v]];
+        if (of < 0) of = static_cast<VertexId>(v);
+        if (of != static_cast<VertexId>(v)) ++merged;
+        becomes[v] = of;
+    }
+    if (merged > 0) {
+        for (Triangle& t : input.mesh.triangles) {
+            for (VertexId& v : t) v = becomes[v];
+        }
+    }
+    return merged;
+}
+
+/// Triangles to drop of those at one place: all but one that faces as more of them do. Where as
+/// many face either way, as walls of solids that touch, all go, but for those of the same points.
+/// \param keepsOne  of all
+std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
+                                      const std::vector<Triangle>& triangles, bool keepsOne) {
+    const std::vector<VertexId> place = placesOf(points);
+    struct Placed {
+        Triangle places;  ///< ascending
+        std::size_t number;
+        int facing;  ///< 1 or -1: whether an even number of swaps makes them so
+        auto operator<=>(const Placed&) const = default;
+    };
+    std::vector<Placed> all;
+    all.reserve(triangles.size());
+    for (std::size_t n = 0; n < triangles.size(); ++n) {
+        Triangle t;
+        for (int i = 0; i < 3; ++i) t[i] = place[triangles[n][i]];
+        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+        const int facing = t[1] < t[2] ? 1 : -1;
+        if (facing < 0) std::swap(t[1], t[2]);
+        all.push_back({t, n, facing});
+    }
+    std::sort(all.begin(), all.end());
+    const auto pointsOf = [&](std::size_t n) {
+        Triangle t = triangles[n];
+        std::sort(t.begin(), t.end());
+        return t;
+    };
+    std::vector<std::uint8_t> isDoubled(triangles.size());
+    for (std::size_t begin = 0, end; begin < all.size(); begin = end) {
+        int facing = 0;
+        bool haveOnePoints = true;
+        for (end = begin; end < all.size() && all[end].places == all[begin].places; ++end) {
+            facing += all[end].facing;
+            haveOnePoints =
+                haveOnePoints && pointsOf(all[end].number) == pointsOf(all[begin].number);
+            isDoubled[all[end].number] = 1;
+        }
+        if (facing == 0 && !haveOnePoints && !keepsOne) continue;
+        for (std::size_t n = begin; n < end; ++n) {
+            if (facing * all[n].facing < 0) continue;
+            isDoubled[all[n].number] = 0;
+            break;
+        }
+    }
+    return isDoubled;
+}
+
+void dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm, MendStatistics& statistics) {
+    AreaTriangles area = withoutFlatTriangles(mesh, mayMoveMm);
+    statistics.degenerateTriangles = area.flat;
+    std::vector<Triangle> kept;
+    if (area.triangles.empty()) {
+        kept.swap(mesh.triangles);
+    } else {
+        for (std::size_t n = 0; n < area.triangles.size(); ++n) {
+            if (area.isLeftOut[n] == 0) kept.push_back(area.triangles[n]);
+        }
+    }
+    std::vector<std::uint8_t> isDoubled = findDoubled(mesh.points, kept, false);
+    if (std::find(isDoubled.begin(), isDoubled.end(), 0) == isDoubled.end()) {
+        isDoubled = findDoubled(mesh.points, kept, true);  // of a sheet with two sides, one
+    }
+    mesh.triangles.clear();
+    for (std::size_t n = 0; n < kept.size(); ++n) {
+        if (isDoubled[n] == 0) mesh.triangles.push_back(kept[n]);
+    }
+    statistics.duplicateTriangles = std::ssize(kept) - std::ssize(mesh.triangles);
+    if (mesh.triangles.empty()) throw InvalidInput("mend: no triangle has an area");
+}
+
+/// The triangles at each edge, in their order.
+Buckets<std::uint32_t> trianglesAtEdges(const MendInput& input) {
+    return Buckets<std::uint32_t>(input.edges.size(), [&](const auto& give) {
+        for (std::uint32_t t = 0; t < input.edgeOf.size(); ++t) {
+            for (const std::uint32_t e : input.edgeOf[t]) give(e, t);
+        }
+    });
+}
+
+/// Does a triangle run along its edge i from the smaller to the larger point?
+bool runsUp(const Triangle& t, std::size_t i) {
+    return t[i] < t[(i + 1) % 3];
+}
+bool runsUpAlong(const MendInput& input, std::uint32_t t, std::uint32_t edge) {
+    const auto& edges = input.edgeOf[t];
+    const auto at =
+        static_cast<std::size_t>(std::find(edges.begin(), edges.end(), edge) - edges.begin());
+    return runsUp(input.mesh.triangles[t], at);
+}
+
+void flip(MendInput& input, std::uint32_t t) {
+    std::swap(input.mesh.triangles[t][1], input.mesh.triangles[t][2]);
+    std::swap(input.edgeOf[t][0], input.edgeOf[t][2]);
+}
+
+/// Sheets: triangles that hang together by edges with two triangles.
+struct Sheets {
+    std::vector<std::uint32_t> triangles;  ///< sheet after sheet
+    std::vector<std::size_t> begin{0};     ///< of each, and the end
+    std::vector<std::uint8_t> isClosed;
+    std::vector<std::uint8_t> isTurned;  ///< of each triangle: turned round since it was given
+
+    std::span<const std::uint32_t> of(std::size_t sheet) const {
+        return std::span(triangles).subspan(begin[sheet], begin[sheet + 1] - begin[sheet]);
+    }
+    std::size_t count() const { return isClosed.size(); }
+};
+
+double areaOf(const TriangleMesh& mesh, std::uint32_t t) {
+    const Corners c = cornersOf(mesh, t);
+    return 0.5 * norm(areaVector2(c[0], c[1], c[2]));
+}
+
+void turnSheet(MendInput& input, Sheets& sheets, std::size_t sheet) {
+    for (const std::uint32_t t : sheets.of(sheet)) {
+        flip(input, t);
+        sheets.isTurned[t] ^= 1;
+    }
+}
+
+/// Turns the triangles of each sheet to face as most of its area does.
+Sheets makeSheetsFaceOneWay(MendInput& input, const Buckets<std::uint32_t>& atEdge) {
+    Sheets sheets;
+    const std::size_t count = input.edgeOf.size();
+    sheets.isTurned.resize(count);
+    std::vector<std::uint8_t> isSeen(count);
+    for (std::uint32_t first = 0; first < count; ++first) {
+        if (isSeen[first] != 0) continue;
+        isSeen[first] = 1;
+        bool isClosed = true;
+        double turnedArea = 0, area = 0;
+        sheets.triangles.push_back(first);
+        for (std::size_t n = sheets.begin.back(); n < sheets.triangles.size(); ++n) {
+            const std::uint32_t t = sheets.triangles[n];
+            area += areaOf(input.mesh, t);
+            if (sheets.isTurned[t] != 0) turnedArea += areaOf(input.mesh, t);
+            for (const std::uint32_t e : input.edgeOf[t]) {
+                const auto at = atEdge.of(e);
+                if (at.size() != 2) {
+                    isClosed = false;
+                    continue;
+                }
+                const std::uint32_t other = at[0] == t ? at[1] : at[0];
+                const bool isOneWay = runsUpAlong(input, t, e) == runsUpAlong(input, other, e);
+                if (isSeen[other] != 0) {
+                    if (isOneWay) isClosed = false;  // of a Moebius band
+                    continue;
+                }
+                isSeen[other] = 1;
+                if (isOneWay) {
+                    flip(input, other);
+                    sheets.isTurned[other] = 1;
+                }
+                sheets.triangles.push_back(other);
+            }
+        }
+        sheets.begin.push_back(sheets.triangles.size());
+        sheets.isClosed.push_back(isClosed ? 1 : 0);
+        if (turnedArea > 0.5 * area) turnSheet(input, sheets, sheets.count() - 1);
+    }
+    return sheets;
+}
+
+/// Turns closed sheets that are inside out and lie in no other, and open ones whose front, by the
+/// even-odd rule, is rather inside.
+void turnSheetsOutward(MendInput& input, Sheets& sheets) {
+    const TriangleMesh& mesh = input.mesh;
+    const AabbTree tree(mesh);
+    const InsideTest inside(mesh, tree);
+    const BoundingBox box = boundingBox(mesh);
+    const Vec3 reference = box.middle();
+    const double step = 1e-6 * norm(box.size());
+    constexpr std::size_t kSamples = 48;
+    for (std::size_t sheet = 0; sheet < sheets.count(); ++sheet) {
+        const auto triangles = sheets.of(sheet);
+        if (sheets.isClosed[sheet] != 0) {
+            double volume = 0;
+            for (const std::uint32_t t : triangles) {
+                const Corners c = cornersOf(mesh, t);
+                volume += dot(c[0] - reference, cross(c[1] - reference, c[2] - reference));
+            }
+            if (volume >= 0) continue;
+        }
+        // A cavity's wall faces the solid's outside, as the solid's own does: both have the outside
+        // of the even-odd rule in front.
+        int front = 0, back = 0;
+        const std::size_t every = (triangles.size() + kSamples - 1) / kSamples;
+        for (std::size_t n = 0; n < triangles.size(); n += every) {
+            const Corners c = cornersOf(mesh, triangles[n]);
+            const Vec3 middle = (1.0 / 3) * (c[0] + c[1] + c[2]);
+            const Vec3 normal = normalized(areaVector2(c[0], c[1], c[2]));
+            const Side ahead = inside.sideOf(middle + step * normal),
+                       behind = inside.sideOf(middle - step * normal);
+            if (ahead == Side::Outside && behind == Side::Inside) ++front;
+            if (ahead == Side::Inside && behind == Side::Outside) ++back;
+        }
+        if (back > front) turnSheet(input, sheets, sheet);
+    }
+}
+
+/// Points whose triangles are more than one fan.
+std::vector<std::uint32_t> findBadVertices(const MendInput& input) {
+    const auto& triangles = input.mesh.triangles;
+    DisjointSets corners(3 * std::ssize(triangles));
+    const auto cornerAt = [&](std::int64_t t, std::uint32_t v) {
+        const Triangle& of = triangles[t];
+        return 3 * t + (of[0] == v ? 0 : of[1] == v ? 1 : 2);
+    };
+    for (const MendInput::Edge& edge : input.edges) {
+        if (!edge.isSound) continue;
+        for (const std::uint32_t v : {edge.a, edge.b}) {
+            corners.join(cornerAt(edge.triangles[0], v), cornerAt(edge.triangles[1], v));
+        }
+    }
+    std::vector<std::int64_t> fan(input.mesh.points.size(), -1);
+    std::vector<std::uint32_t> bad;
+    for (std::int64_t c = 0; c < 3 * std::ssize(triangles); ++c) {
+        const VertexId v = triangles[c / 3][c % 3];
+        const std::int64_t set = corners.find(c);
+        if (fan[v] == -1) fan[v] = set;
+        if (fan[v] != set && fan[v] >= 0) {
+            fan[v] = -2;
+            bad.push_back(static_cast<std::uint32_t>(v));
+        }
+    }
+    return bad;
+}
+
+void findCrossings(MendInput& input, MendStatistics& statistics) {
+    std::vector<TriangleView::Triangle> triangles;
+    triangles.reserve(input.mesh.triangles.size());
+    for (const auto& [a, b, c] : input.mesh.triangles) {
+        triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                             static_cast<std::uint32_t>(c)});
+    }
+    CrossingPairs crossing = findCrossingPairs({input.mesh.points, triangles});
+    input.crossingPairs = std::move(crossing.pairs);
+    input.undecided = std::move(crossing.undecided);
+    std::vector<std::uint32_t> all = input.undecided;
+    for (const auto& pair : input.crossingPairs) all.insert(all.end(), pair.begin(), pair.end());
+    std::sort(all.begin(), all.end());
+    statistics.crossingTriangles = std::unique(all.begin(), all.end()) - all.begin();
+}
+
+}  // namespace
+
+void findEdges(MendInput& input) {
+    struct HalfEdge {
+        std::uint32_t a, b, at;
+        auto operator<=>(const HalfEdge&) const = default;
+    };
+    std::vector<HalfEdge> halves;
+    halves.reserve(3 * input.mesh.triangles.size());
+    for (std::uint32_t t = 0; t < input.mesh.triangles.size(); ++t) {
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            const auto from = static_cast<std::uint32_t>(input.mesh.triangles[t][i]),
+                       to = static_cast<std::uint32_t>(input.mesh.triangles[t][(i + 1) % 3]);
+            halves.push_back({std::min(from, to), std::max(from, to), 3 * t + i});
+        }
+    }
+    std::sort(halves.begin(), halves.end());
+    input.edges.clear();
+    input.edgeOf.resize(input.mesh.triangles.size());
+    for (std::size_t begin = 0, end; begin < halves.size(); begin = end) {
+        for (end = begin; end < halves.size() && halves[end].a == halves[begin].a &&
+                          halves[end].b == halves[begin].b;
+             ++end) {
+            input.edgeOf[halves[end].at / 3][halves[end].at % 3] =
+                static_cast<std::uint32_t>(input.edges.size());
+        }
+        input.edges.push_back({halves[begin].a, halves[begin].b, {-1, -1}, false});
+    }
+}
+
+MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
+    requireMendable(mesh);
+    MendInput input;
+    input.mesh.points = mesh.points;
+    input.mesh.triangles = mesh.triangles;
+    dropFlatAndDoubled(input.mesh, 0.1 * statistics.maxErrorMm, statistics);
+    findEdges(input);
+    statistics.mergedPoints = mergeBorderPoints(input);
+    if (statistics.mergedPoints > 0) findEdges(input);
+    const Buckets<std::uint32_t> atEdge = trianglesAtEdges(input);
+    Sheets sheets = makeSheetsFaceOneWay(input, atEdge);
+    turnSheetsOutward(input, sheets);
+    statistics.flippedTriangles =
+        std::count(sheets.isTurned.begin(), sheets.isTurned.end(), std::uint8_t{1});
+    for (std::uint32_t e = 0; e < input.edges.size(); ++e) {
+        MendInput::Edge& edge = input.edges[e];
+        const auto at = atEdge.of(e);
+        if (at.size() == 1) ++statistics.borderEdges;
+        if (at.size() > 2) ++statistics.badEdges;
+        if (at.size() != 2) continue;
+        const bool up = runsUpAlong(input, at[0], e);
+        edge.isSound = up != runsUpAlong(input, at[1], e);
+        edge.triangles = {at[up ? 0 : 1], at[up ? 1 : 0]};
+        if (!edge.isSound) ++statistics.badEdges;
+    }
+    input.badVertices = findBadVertices(input);
+    statistics.badVertices = std::ssize(input.badVertices);
+    findCrossings(input, statistics);
+    return input;
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/TriangleMesh.h"
+
+namespace adaptiso::detail {
+
+/// The generalized winding number [Jacobson2013] of any triangles: 1 in a closed surface whose
+/// triangles face outward, 0 outside of it.
+///
+/// Triangles far from the point count together, as the first term of their multipole expansion
+/// [Barill2018]; near ones each for itself [vanOosterom1983]. The error is a few thousandths.
+class WindingField {
+public:
+    /// Keeps a reference to `mesh`. \param tree  of it
+    WindingField(const TriangleMesh& mesh, const AabbTree& tree);
+
+    /// \param without  a triangle that does not count; -1: all do
+    double at(const Vec3& p, std::int64_t without = -1) const;
+
+private:
+    static constexpr std::int64_t kLeaf = 8;
+    struct Node {
+        Vec3 middle;             ///< mean, by area
+        Vec3 dipole;             ///< sum of area vectors
+        double radius = 0;       ///< no corner is farther from the middle
+        std::uint32_t skip = 0;  ///< number of the first node behind this one's
+        std::uint32_t begin = 0, end = 0;
+    };
+    std::uint32_t build(std::uint32_t begin, std::uint32_t end);
+
+    const TriangleMesh& mesh_;
+    std::vector<std::int64_t> order_;
+    std::vector<Node> nodes_;  ///< a node, its first half, its second half
+};
+
+/// The solid angle of a triangle seen from a point, as a part of the whole sphere.
+double solidAnglePart(const Corners& triangle, const Vec3& p);
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,260 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "Support/Meshes.h"
+#include "Support/Soundness.h"
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/Topology.h"
+
+namespace adaptiso::testing {
+namespace {
+
+void expectMended(const Mended& mended, const char* file = __builtin_FILE(),
+                  int line = __builtin_LINE()) {
+    expectSound(mended.mesh, {}, file, line);
+    EXPECT_EQ(findSelfIntersections(mended.mesh).pairCount, 0) << file << ":" << line;
+    const MendStatistics& s = mended.statistics;
+    EXPECT_LE(s.resultToInputMm, s.maxErrorMm) << file << ":" << line;
+    EXPECT_LE(s.inputToResultMm, s.maxErrorMm) << file << ":" << line;
+}
+
+double areaOf(const std::vector<MendedPlace>& places) {
+    double area = 0;
+    for (const MendedPlace& place : places) area += place.areaMm2;
+    return area;
+}
+
+TriangleMesh bare(TriangleMesh mesh) {
+    mesh.normals.clear();
+    return mesh;
+}
+
+/// Every triangle has its corners for itself.
+TriangleMesh soupOf(const TriangleMesh& mesh) {
+    TriangleMesh soup;
+    for (std::int64_t t = 0; t < std::ssize(mesh.triangles); ++t) {
+        const VertexId first = std::ssize(soup.points);
+        for (const Vec3& p : cornersOf(mesh, t)) soup.points.push_back(p);
+        soup.triangles.push_back({first, first + 1, first + 2});
+    }
+    return soup;
+}
+
+MendOptions within(double maxErrorMm) {
+    MendOptions options;
+    options.maxErrorMm = maxErrorMm;
+    return options;
+}
+
+/// The distances by samples: most points of either surface lie within the bound of the other; the
+/// others are no more than what was listed.
+void expectBounds(const TriangleMesh& input, const Mended& mended) {
+    const auto areaBeyond = [&](const TriangleMesh& from, const TriangleMesh& to) {
+        const AabbTree tree(to);
+        double area = 0;
+        for (std::int64_t t = 0; t < std::ssize(from.triangles); ++t) {
+            const Corners c = cornersOf(from, t);
+            constexpr int kSteps = 12;  // parts of a side
+            const double part =
+                norm(areaVector2(c[0], c[1], c[2])) / 2 / (kSteps * (kSteps + 1) / 2);
+            for (int i = 0; i < kSteps; ++i) {
+                for (int j = 0; i + j < kSteps; ++j) {
+                    const double u = (i + 1.0 / 3) / kSteps, v = (j + 1.0 / 3) / kSteps;
+                    const Vec3 p = c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0]);
+                    const double away = tree.closestPoint(p).squaredDistanceMm2;
+                    if (std::sqrt(away) > mended.statistics.maxErrorMm) area += part;
+                }
+            }
+        }
+        return area;
+    };
+    const MendStatistics& s = mended.statistics;
+    EXPECT_LE(areaBeyond(mended.mesh, input), 1.05 * areaOf(s.filled) + 1e-3);
+    // what the input holds twice counts twice here
+    EXPECT_LE(areaBeyond(input, mended.mesh), 1.05 * (areaOf(s.inner) + areaOf(s.thin)) + 1e-3);
+}
+
+TEST(Mend, GivesSoundMeshesBack) {
+    for (const TriangleMesh& mesh : {icosphere(3), torusMesh(40, 20, 3, 1), cubeMesh()}) {
+        const Mended mended = mend(mesh);
+        EXPECT_TRUE(mended.statistics.wasSound);
+        EXPECT_EQ(mended.mesh, mesh);
+    }
+}
+
+TEST(Mend, ClosesAHoleOfOneTriangle) {
+    const TriangleMesh sphere = bare(icosphere(3));
+    MendOptions options;
+    options.maxHoleMm = 0.25;
+    const Mended mended = mend(withHole(sphere), options);
+    expectMended(mended);
+    EXPECT_EQ(mended.statistics.borderEdges, 3);
+    EXPECT_EQ(mended.statistics.filled.size(), 1u);
+    EXPECT_NEAR(enclosedVolume(mended.mesh), enclosedVolume(sphere), 1e-3);
+    EXPECT_GT(mended.statistics.keptTriangles, 1250);
+}
+
+TEST(Mend, UnitesSpheresThatCross) {
+    // the union of two unit balls whose centres are half a radius apart: two balls less a lens
+    const TriangleMesh spheres = bare(crossingSpheres(4));
+    const Mended mended = mend(spheres, within(0.02));
+    expectMended(mended);
+    const double d = 0.5, lens = std::numbers::pi * (4 + d) * (2 - d) * (2 - d) / 12;
+    EXPECT_NEAR(enclosedVolume(mended.mesh), 8 * std::numbers::pi / 3 - lens, 0.03);
+    EXPECT_EQ(nestingOf(mended.mesh), "()");
+    // what lies in the other ball: two caps of height .75
+    EXPECT_NEAR(areaOf(mended.statistics.inner), 2 * 2 * std::numbers::pi * 0.75, 0.3);
+}
+
+TEST(Mend, TurnsWhatIsFlipped) {
+    const TriangleMesh sphere = bare(icosphere(3));
+    const Mended one = mend(withFlippedTriangle(sphere));
+    EXPECT_EQ(one.statistics.flippedTriangles, 1);
+    EXPECT_EQ(one.mesh.triangles.size(), sphere.triangles.size());
+    expectMended(one);
+    TriangleMesh inverted = sphere;
+    flipOrientation(inverted);
+    const Mended all = mend(inverted);
+    expectMended(all);
+    EXPECT_GT(enclosedVolume(all.mesh), 4);
+}
+
+TEST(Mend, DropsDoubledAndFlatTriangles) {
+    const TriangleMesh sphere = bare(icosphere(3));
+    for (const TriangleMesh& mesh : {withDuplicateTriangle(sphere), withZeroAreaTriangle(sphere),
+                                     withRepeatedIndex(sphere), withUnusedVertex(sphere)}) {
+        const Mended mended = mend(mesh);
+        expectMended(mended);
+        EXPECT_NEAR(enclosedVolume(mended.mesh), enclosedVolume(sphere), 1e-9);
+        EXPECT_EQ(mended.statistics.cells, 0);
+    }
+}
+
+TEST(Mend, JoinsASoup) {
+    const TriangleMesh sphere = bare(icosphere(3));
+    const Mended mended = mend(soupOf(sphere));
+    expectMended(mended);
+    EXPECT_EQ(mended.mesh.points.size(), sphere.points.size());
+    EXPECT_EQ(mended.statistics.cells, 0);
+    EXPECT_GT(mended.statistics.mergedPoints, 0);
+}
+
+TEST(Mend, PartsSpheresThatTouch) {
+    const Mended mended = mend(bare(twoSpheresTouchingAtAVertex()));
+    expectMended(mended);
+}
+
+TEST(Mend, KeepsCavitiesAndDropsInnerShells) {
+    const TriangleMesh outer = bare(icosphere(3, {}, 2)), inner = bare(icosphere(3));
+    TriangleMesh cavity = inner;
+    flipOrientation(cavity);
+    const Mended hollow = mend(merged({outer, cavity}));
+    EXPECT_TRUE(hollow.statistics.wasSound);
+    const Mended solid = mend(merged({outer, inner}));
+    expectMended(solid);
+    EXPECT_EQ(nestingOf(solid.mesh), "()");
+    EXPECT_NEAR(areaOf(solid.statistics.inner), surfaceArea(inner), 1e-9);
+}
+
+TEST(Mend, UnitesSolidsThatShareAWall) {
+    const TriangleMesh cubes = merged({cubeMesh(), cubeMesh({1, 0, 0}, {2, 1, 1})});
+    const Mended mended = mend(cubes);
+    expectMended(mended);
+    EXPECT_EQ(mended.mesh.triangles.size(), 20u);  // two squares less
+    EXPECT_EQ(mended.statistics.cells, 0);
+    EXPECT_DOUBLE_EQ(enclosedVolume(mended.mesh), 2);
+}
+
+TEST(Mend, KeepsOneOfASolidGivenTwice) {
+    for (const bool isTurned : {false, true}) {
+        TriangleMesh again = cubeMesh();
+        if (isTurned) flipOrientation(again);
+        const Mended mended = mend(merged({cubeMesh(), again}));
+        expectMended(mended);
+        EXPECT_EQ(mended.statistics.duplicateTriangles, 12);
+        EXPECT_DOUBLE_EQ(enclosedVolume(mended.mesh), 1);
+    }
+}
+
+/// Two cubes that cross at corners: faces in planes, cut along the lattice.
+TEST(Mend, UnitesCubesWithSharpEdges) {
+    const Mended mended =
+        mend(merged({cubeMesh(), cubeMesh({.5, .5, .5}, {1.5, 1.5, 1.5})}), within(0.01));
+    expectMended(mended);
+    EXPECT_NEAR(enclosedVolume(mended.mesh), 1.875, 1e-3);
+    EXPECT_NEAR(areaOf(mended.statistics.inner), 1.5, 0.05);
+}
+
+TEST(Mend, RefusesWideHolesOrLeavesThemOpen) {
+    TriangleMesh bowl = bare(icosphere(3));
+    std::erase_if(bowl.triangles, [&](const Triangle& t) {
+        return bowl.points[t[0]].z > 0.5 && bowl.points[t[1]].z > 0.5 && bowl.points[t[2]].z > 0.5;
+    });
+    EXPECT_THROW(mend(bowl, within(0.03)), InvalidInput);
+    MendOptions options = within(0.03);
+    options.maxHoleMm = 3;
+    const Mended closed = mend(bowl, options);
+    expectMended(closed);
+    EXPECT_EQ(closed.statistics.filled.size(), 1u);
+    options.maxHoleMm = 0.1;
+    options.leavesHolesOpen = true;
+    const Mended open = mend(bowl, options);
+    EXPECT_EQ(open.statistics.leftOpen.size(), 1u);
+    const TopologyReport topology = checkTopology(open.mesh);
+    EXPECT_TRUE(topology.isManifold() && topology.isOriented() && !topology.isClosed());
+}
+
+TEST(Mend, RefusesWhatEnclosesNothing) {
+    EXPECT_THROW(mend(planeMesh(4, 1), within(0.05)), InvalidInput);
+    EXPECT_THROW(mend({}), InvalidInput);
+    EXPECT_THROW(mend(cubeMesh(), within(0)), InvalidInput);
+}
+
+/// Holes, crossings, flips and doubles at random; the distances are proved again from outside.
+TEST(Mend, MendsRandomDamage) {
+    for (unsigned seed = 0; seed < 6; ++seed) {
+        SCOPED_TRACE(seed);
+        std::mt19937 random(seed);
+        const auto below = [&](std::size_t n) { return random() % n; };
+        TriangleMesh mesh = seed % 2 == 0 ? bare(icosphere(3)) : bare(torusMesh(40, 20, 2, 0.8));
+        for (int n = 0; n < 12; ++n) {
+            const std::size_t t = below(mesh.triangles.size());
+            switch (below(5)) {
+                case 0:
+                    mesh.triangles.erase(mesh.triangles.begin() + t);
+                    break;
+                case 1:
+                    std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+                    break;
+                case 2:
+                    mesh.triangles.push_back(mesh.triangles[t]);
+                    break;
+                case 3:  // a spike through the neighbours
+                    mesh.points[mesh.triangles[t][0]] =
+                        mesh.points[mesh.triangles[below(mesh.triangles.size())][1]] +
+                        Vec3{0.01, 0.02, 0.03};
+                    break;
+                default:
+                    mesh.triangles[t][2] = static_cast<VertexId>(below(mesh.points.size()));
+            }
+        }
+        MendOptions options = within(0.03);
+        options.maxHoleMm = 100;
+        Mended mended;
+        ASSERT_NO_THROW(mended = mend(mesh, options));
+        expectMended(mended);
+        expectBounds(mesh, mended);
+        const ThreadLimitGuard one(1);
+        EXPECT_EQ(mend(mesh, options).mesh, mended.mesh);
+    }
+}
+
+}  // namespace
+}  // namespace adaptiso::testing
