@@ -3,6 +3,7 @@ python3-nibabel; exits 77 (skipped) without them.
 """
 import json
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -352,6 +353,26 @@ class Toolboxes(SharedFolderTest):
         for head in (dense, sparse):
             off = np.linalg.norm(1000 * head["rr"] - middle, axis=1) - 92
             self.assertLess(np.abs(off).max(), 2)
+
+    @unittest.skipUnless(shutil.which("mne"), "needs MNE's programs")
+    def test_mnes_own_programs_take_the_files(self):
+        self.model("ras")
+
+        def run(*arguments):
+            done = subprocess.run(["mne", *map(str, arguments)], cwd=self.folder, text=True, capture_output=True,
+                                  timeout=300)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+        run("prepare_bem_model", "--bem", "ras/bem.fif", "--sol", "made-bem-sol.fif")
+        solution = mne.read_bem_solution(self.path("made-bem-sol.fif"))
+        self.assertEqual(solution["solution"].shape, 2 * (sum(s["np"] for s in solution["surfs"]),))
+        np.testing.assert_allclose(solution["solution"], mne.make_bem_solution(
+            mne.read_bem_surfaces(self.path("ras/bem.fif")))["solution"], rtol=1e-5, atol=1e-7)  # the file has floats
+        run("surf2bem", "--surf", "ras/outer_skin.surf", "--fif", "skin.fif", "--id", 4)
+        skin, = mne.read_bem_surfaces(self.path("skin.fif"))
+        ours = mne.read_bem_surfaces(self.path("ras/bem.fif"), s_id=4)
+        np.testing.assert_allclose(skin["rr"], ours["rr"], atol=1e-7)
+        np.testing.assert_array_equal(skin["tris"], ours["tris"])
 
     def test_mne_finds_the_heads_of_a_subject(self):
         self.model("ras")
