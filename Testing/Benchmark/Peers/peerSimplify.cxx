@@ -107,7 +107,8 @@ std::function<Made()> meshoptimizer(const TriangleMesh& mesh, const Arguments& a
 }
 
 nlohmann::ordered_json run(const Arguments& arguments) {
-    TriangleMesh mesh = readMesh(arguments.mesh).mesh;
+    MeshFile file = readMesh(arguments.mesh);
+    TriangleMesh& mesh = file.mesh;
     mesh.normals = {};  // the others don't take them along
     const auto work = arguments.method == "adaptiso"  ? ours(mesh, arguments)
                       : arguments.method == "quadric" ? quadric(mesh, arguments)
@@ -131,7 +132,8 @@ nlohmann::ordered_json run(const Arguments& arguments) {
     report["triangles"] = result.triangles.size();
     if (!arguments.output.empty()) {
         MeshWriteOptions options;
-        options.frame = CoordinateFrame::Lps;
+        options.frame = file.frame.value_or(CoordinateFrame::Lps);
+        options.isInFrame = true;
         writeMesh(result, arguments.output, options);
     }
     return report;

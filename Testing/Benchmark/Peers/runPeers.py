@@ -4,6 +4,7 @@
   runPeers.py compare   all methods at one count of triangles, side by side: compare.json
   runPeers.py bound     ours by its default bound, decimation to as many triangles: bound.json
   runPeers.py scans     ours and decimation on thirteen other scans, at 30, 10 and 3 %: scans.json
+  runPeers.py held      ours by its default bound and meshoptimizer to as many triangles, on these: held.json
   runPeers.py relatives the methods that the thesis surveys, at one count: relatives.json
   runPeers.py counts    triangles that a largest distance of 0.1 to 1 voxel takes: counts.json
   runPeers.py pareto    all methods at several counts: pareto.json
@@ -117,6 +118,25 @@ def scans(bench, arguments):
             tell(f"{name}, {100 * part:.0f} %: mean {mean:.3f}, time "
                  f"{peers.median_ratio(ours, base):.2f}, processor time "
                  f"{peers.median_ratio(ours, base, 'cpuSeconds'):.2f} of quadric's")
+        image.unlink()
+        for kept in arguments.output.glob(f"{name}-*"):
+            kept.unlink()
+    return results
+
+
+def held(bench, arguments):
+    """Scans that no constant was chosen by, as users get them who ask for nothing."""
+    results = []
+    for name, image, isovalue in otherScans.write(arguments.output):
+        volume = peers.Volume(name, image, isovalue, None, asked=isovalue)
+        facts = bench.prepare(volume)
+        ours = peers.ours("adaptive", "open", border_="open")
+        count = bench.run(volume, ours)["triangles"]
+        rows = bench.rows(volume, [ours, peers.meshoptimizer(count)], arguments.repeats, meters_heap=False)
+        ratios = sorted(a / b for a, b in zip(*(row["cpuSeconds"] for row in rows)))
+        results.append({"name": name, "isovalue": isovalue, "mcTriangles": facts["mcTriangles"], "rows": rows})
+        tell(f"{name}: {100 * count / facts['mcTriangles']:.0f} % of {facts['mcTriangles']:,}, processor time "
+             f"{peers.median_ratio(*rows, 'cpuSeconds'):.2f} of meshoptimizer's, {ratios[0]:.2f} to {ratios[-1]:.2f}")
         image.unlink()
         for kept in arguments.output.glob(f"{name}-*"):
             kept.unlink()
@@ -259,8 +279,8 @@ def growth(bench, arguments):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command", choices=["compare", "bound", "scans", "relatives", "counts", "pareto", "growth",
-                                            "report"])
+    parser.add_argument("command", choices=["compare", "bound", "scans", "held", "relatives", "counts", "pareto",
+                                            "growth", "report"])
     parser.add_argument("-o", "--output", type=pathlib.Path, default=TOP / "out" / "peers")
     parser.add_argument("--programs", type=pathlib.Path,
                         default=TOP / "build" / "benchmark" / "Testing" / "Benchmark" / "Peers")
@@ -287,6 +307,8 @@ def main():
         report["sizes"] = growth(bench, arguments)
     elif arguments.command == "scans":
         report["scans"] = scans(bench, arguments)
+    elif arguments.command == "held":
+        report["scans"] = held(bench, arguments)
     else:
         measure = {"compare": compare, "bound": bound, "relatives": relatives, "counts": counts,
                    "pareto": pareto}[arguments.command]
