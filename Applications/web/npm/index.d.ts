@@ -14,14 +14,14 @@ export interface ImageArray {
 /** A triangle mesh: points in scanner RAS mm, three numbers each; triangles counter-clockwise seen from outside. */
 export interface MeshArray { points: Float64Array | Float32Array; triangles: Uint32Array }
 
-/** A file: bytes with the name they go by; `path` is relative and may have folders (`model/head.surf`). Inputs of
+/** A file: bytes with the name they go by; `path` is relative, of at most 1,000 characters, and may have folders (`model/head.surf`). Inputs of
  *  one name are kept apart, in folders `1`, `2`, ... that lines may then name. */
 export interface NamedFile { path: string; bytes: Uint8Array }
 export type ImageInput = ImageArray | NamedFile | File;
 export type MeshInput = MeshArray | NamedFile | File;
 
 export interface RunOptions {
-  /** The stage of a run and how far it is: "extract 42 %". */
+  /** The stage of a run and how far it is: "extract 42 %". What it throws rejects the run. */
   onProgress?: (text: string) => void;
   /** Ends the run at once; its promise is rejected with the signal's reason. */
   signal?: AbortSignal;

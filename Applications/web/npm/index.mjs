@@ -1,9 +1,12 @@
 // The programs of adaptiso as functions: each call runs one of them in a worker of its own. Types and what they
 // mean: index.d.ts.
 
+/** Characters that act on a terminal, or turn a line's order round. */
+const kControls = /[\p{Cc}\u061c\u200e\u200f\ufeff\u2028-\u202e\u2066-\u2069\u{e0000}-\u{e007f}]/gu;
+
 export class AdaptisoError extends Error {
   constructor(line, exitCode) {
-    super(line);
+    super(line.replace(kControls, " "));
     this.name = "AdaptisoError";
     this.exitCode = exitCode;
   }
@@ -45,19 +48,41 @@ function normalPath(path) {
   if (typeof path !== "string" || path.startsWith("/") || parts.length === 0 || parts.includes("..")) {
     throw new AdaptisoError(`the path "${path}" must be relative, without "..": give the file's name`, 2);
   }
+  const kMost = 1000;  // characters: each folder takes time
+  if (path.length > kMost) throw new AdaptisoError(`the path "${path.slice(0, 40)}..." is too long: at most ${kMost} characters`, 2);
   return parts.join("/");
 }
 
-function normalFile({ path, bytes }) {
+function normalFile(file) {
+  if (typeof file !== "object" || file === null) throw new AdaptisoError("a file must be { path, bytes }", 2);
+  const { path, bytes } = file;
   if (!(bytes instanceof Uint8Array)) throw new AdaptisoError(`${path}: bytes must be a Uint8Array`, 2);
   return { path: normalPath(path), bytes };
 }
 
+function requireStrings(args) {
+  const areStrings = Array.isArray(args) && args.every((each) => typeof each === "string");
+  if (!areStrings) throw new AdaptisoError("args must be an array of strings", 2);
+}
+
+/** A file has a path of its own, which is no folder. */
+function requireApart(paths, folders) {
+  const files = new Set();
+  for (const path of paths) {
+    if (files.has(path)) throw new AdaptisoError(`two files have the path "${path}": give each a path of its own`, 2);
+    files.add(path);
+  }
+  const above = (path) => path.split("/").map((_, n, parts) => parts.slice(0, n).join("/")).slice(1);
+  const both = [...paths.flatMap(above), ...folders.flatMap((folder) => [...above(folder), folder])].find((path) => files.has(path));
+  if (both !== undefined) throw new AdaptisoError(`the path "${both}" is a file and a folder: give each a path of its own`, 2);
+}
+
 export async function run(program, args, files, { onProgress, signal, folders = [] } = {}) {
   signal?.throwIfAborted();
+  requireStrings(args);
+  if (!Array.isArray(files)) throw new AdaptisoError("files must be an array", 2);
   const job = { program, args, files: files.map(normalFile), folders: folders.map(normalPath) };
-  const paths = job.files.map((file) => file.path), twice = paths.find((path, n) => paths.indexOf(path) !== n);
-  if (twice !== undefined) throw new AdaptisoError(`two files have the path "${twice}": give each a path of its own`, 2);
+  requireApart(job.files.map((file) => file.path), job.folders);
   const module = await compile(), worker = await makeWorker();
   let abort;
   try {
@@ -66,8 +91,15 @@ export async function run(program, args, files, { onProgress, signal, folders = 
       signal?.addEventListener("abort", abort);
       if (signal?.aborted) abort();
       worker.onerror = (error) => reject(new AdaptisoError(`adaptiso-${program}: the worker failed: ${error.message}`, 4));
+      const report = (progress) => {
+        try {
+          onProgress?.(progress);
+        } catch (error) {
+          reject(error);
+        }
+      };
       worker.onmessage = ({ data }) => {
-        if (data.progress !== undefined) onProgress?.(data.progress);
+        if (data.progress !== undefined) report(data.progress);
         else if (data.failure !== undefined) reject(new AdaptisoError(`adaptiso-${program}: ${data.failure}`, 4));
         else resolve(data.result);
       };
@@ -99,6 +131,7 @@ function writtenFile(program, done, path) {
 /** Runs with a report. \param mayFail  exit code 1, a check failed, is no error \param inputs  after all options */
 async function runReported(program, args, inputs, files, options) {
   const { mayFail = false, args: further = [], ...rest } = options;
+  requireStrings(further);
   const done = await run(program, [...args, ...further, "--json", kReport, ...(inputs.length > 0 ? ["--"] : []), ...inputs], files, rest);
   const lines = done.stderr.split("\n").filter((line) => line !== "");
   if (done.exitCode > (mayFail ? 1 : 0)) throw new AdaptisoError(lines.at(-1) ?? `adaptiso-${program} failed`, done.exitCode);
@@ -148,8 +181,10 @@ function nifti({ data, size, affine }) {
 
 /** A mesh as binary PLY in RAS. */
 function ply({ points, triangles }) {
-  if (![points, triangles].every((array) => ArrayBuffer.isView(array) && array.length % 3 === 0)) {
-    throw new AdaptisoError("mesh.points and mesh.triangles must be typed arrays, three numbers each", 3);
+  const isOf = (array, types) => types.some((type) => array instanceof type) && array.length % 3 === 0;
+  const kWhole = [Uint32Array, Int32Array, Uint16Array, Int16Array, Uint8Array, Int8Array], kNumbers = [Float64Array, Float32Array, ...kWhole];
+  if (!isOf(points, kNumbers) || !isOf(triangles, kWhole)) {
+    throw new AdaptisoError("mesh.points and mesh.triangles must be typed arrays, three numbers each, of triangles whole ones", 3);
   }
   const head = new TextEncoder().encode(`ply\nformat binary_little_endian 1.0\ncomment SPACE=RAS\nelement vertex ${points.length / 3}\n`
     + "property double x\nproperty double y\nproperty double z\n"

@@ -111,6 +111,11 @@ describe("mesh", () => {
     await mesh(ball(12), { iso: 100, onProgress: (text) => seen.push(text) });
     assert.ok(seen.some((text) => / (\d+ %|\.\.\.)$/.test(text)), seen.join());
   });
+  it("throws what onProgress throws", async () => {
+    const mine = new Error("mine");
+    await assert.rejects(mesh(ball(12), { iso: 100, onProgress() { throw mine; } }), mine);
+    await assert.rejects(mesh(ball(12), { iso: 100, onProgress: "text" }), TypeError);
+  });
   it("refuses wrong arrays in one line", async () => {
     const given = ball(12);
     for (const [change, line] of [
@@ -144,6 +149,9 @@ describe("simplify", () => {
   it("refuses arrays that are no mesh", async () => {
     await refused(simplify({ points: new Float64Array(4), triangles: new Uint32Array(3) }, { triangles: 9 }), 3, /^mesh\.points and/);
     await refused(simplify({ points: [], triangles: new Uint32Array(3) }, { triangles: 9 }), 3, /^mesh\.points and/);
+    const points = new Float64Array(12);
+    for (const wrong of [{ points, triangles: new Float64Array([0, 2.7, 1]) }, { points, triangles: new BigUint64Array(3) },
+      { points: new BigInt64Array(12), triangles: new Uint32Array(3) }]) await refused(check(wrong), 3, /^mesh\.points and/);
   });
 });
 
@@ -231,6 +239,20 @@ describe("run", () => {
     }
     await refused(run("check", [], [file], { folders: ["../out"] }), 2, /must be relative/);
     await refused(run("check", [], [{ ...file, bytes: "text" }]), 2, /bytes must be a Uint8Array/);
+  });
+  it("refuses paths that no folder could hold, and what is no list, in a line without control characters", async () => {
+    const bytes = new Uint8Array(4), one = { path: "a", bytes };
+    for (const [files, folders, line] of [
+      [[one, { path: "a/b", bytes }], [], /^the path "a" is a file and a folder/],
+      [[one], ["a/b"], /^the path "a" is a file/], [[one], ["a"], /^the path "a" is a file/],
+      [[{ path: "d/".repeat(3000) + "x", bytes }], [], /^the path "(d\/)+\.\.\." is too long/],
+      [[{ path: "/\x1b[31m\u009b\u202e", bytes }], [], /^the path "\/ \[31m  " must be relative/],
+      [[{ path: "\x1b[31m", bytes: "text" }], [], /^ \[31m: bytes must be/],
+      [null, [], /^files must be an array/], [[null], [], /^a file must be/]]) {
+      await refused(run("check", ["a"], files, { folders }), 2, line);
+    }
+    for (const args of [null, "--help", [null], [5]]) await refused(run("check", args, []), 2, /^args must be an array of strings/);
+    await refused(check({ path: "a.off", bytes }, { args: {} }), 2, /^args must be an array of strings/);
   });
   it("runs two at once with the bytes of one", async () => {
     const one = () => run("mesh", ["ball.nii", "--iso", "100", "-o", "out.ply"], [file]);
