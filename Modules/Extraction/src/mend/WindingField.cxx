@@ -16,18 +16,18 @@ double solidAnglePart(const Corners& triangle, const Vec3& p) {
 
 WindingField::WindingField(const TriangleMesh& mesh, const AabbTree& tree)
     : mesh_(mesh), order_(tree.triangles().begin(), tree.triangles().end()) {
-    nodes_.reserve(2 * order_.size() / kLeaf + 2);
-    if (!order_.empty()) build(0, static_cast<std::uint32_t>(order_.size()));
+    const std::int64_t leaves = (std::ssize(order_) + kLeafTriangles - 1) / kLeafTriangles;
+    nodes_.resize(std::max<std::int64_t>(2 * leaves - 1, 0));
+    if (leaves > 0) build({0, 0, leaves});
 }
 
-std::uint32_t WindingField::build(std::uint32_t begin, std::uint32_t end) {
-    const auto number = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
-    Node node;
-    node.begin = begin;
-    node.end = end;
+void WindingField::build(const HalvedLeaves& subtree) {
+    Node& node = nodes_[subtree.node];
+    node.begin = subtree.firstLeaf * kLeafTriangles;
+    node.end = std::min((subtree.firstLeaf + subtree.leaves) * kLeafTriangles, std::ssize(order_));
+    node.behind = subtree.node + 2 * subtree.leaves - 1;
     double area = 0;
-    for (std::uint32_t n = begin; n < end; ++n) {
+    for (std::int64_t n = node.begin; n < node.end; ++n) {
         const Corners c = cornersOf(mesh_, order_[n]);
         const Vec3 vector = 0.5 * areaVector2(c[0], c[1], c[2]);
         const double size = norm(vector);
@@ -35,39 +35,36 @@ std::uint32_t WindingField::build(std::uint32_t begin, std::uint32_t end) {
         node.middle += size / 3 * (c[0] + c[1] + c[2]);
         area += size;
     }
-    node.middle = area > 0 ? 1 / area * node.middle : cornersOf(mesh_, order_[begin])[0];
-    for (std::uint32_t n = begin; n < end; ++n) {
+    node.middle = area > 0 ? 1 / area * node.middle : cornersOf(mesh_, order_[node.begin])[0];
+    double squared = 0;
+    for (std::int64_t n = node.begin; n < node.end; ++n) {
         for (const Vec3& corner : cornersOf(mesh_, order_[n])) {
-            node.radius = std::max(node.radius, norm(corner - node.middle));
+            squared = std::max(squared, squaredNorm(corner - node.middle));
         }
     }
-    if (end - begin > kLeaf) {
-        const std::uint32_t half = begin + (end - begin + 1) / 2;
-        build(begin, half);
-        build(half, end);
-    }
-    node.skip = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[number] = node;
-    return number;
+    node.radius = std::sqrt(squared);
+    if (subtree.isLeaf()) return;
+    build(subtree.left());
+    build(subtree.right());
 }
 
 double WindingField::at(const Vec3& p, std::int64_t without) const {
     constexpr double kFar = 2.5;  // radii
     double sum = 0;
-    for (std::uint32_t n = 0; n < nodes_.size();) {
+    for (std::int64_t n = 0; n < std::ssize(nodes_);) {
         const Node& node = nodes_[n];
         const Vec3 away = node.middle - p;
         const double squared = squaredNorm(away);
         if (squared > kFar * kFar * node.radius * node.radius) {
             sum += dot(away, node.dipole) / (squared * std::sqrt(squared) * 4 * std::numbers::pi);
-            n = node.skip;
-        } else if (node.skip == n + 1) {
-            for (std::uint32_t i = node.begin; i < node.end; ++i) {
+            n = node.behind;
+        } else if (node.behind > n + 1) {
+            ++n;
+        } else {
+            for (std::int64_t i = node.begin; i < node.end; ++i) {
                 if (order_[i] != without) sum += solidAnglePart(cornersOf(mesh_, order_[i]), p);
             }
-            n = node.skip;
-        } else {
-            ++n;
+            n = node.behind;
         }
     }
     return sum;

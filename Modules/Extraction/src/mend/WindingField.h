@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
 namespace adaptiso::detail {
@@ -22,19 +23,19 @@ public:
     double at(const Vec3& p, std::int64_t without = -1) const;
 
 private:
-    static constexpr std::int64_t kLeaf = 8;
+    static constexpr std::int64_t kLeafTriangles = 4;  ///< as the tree has them
     struct Node {
-        Vec3 middle;             ///< mean, by area
-        Vec3 dipole;             ///< sum of area vectors
-        double radius = 0;       ///< no corner is farther from the middle
-        std::uint32_t skip = 0;  ///< number of the first node behind this one's
-        std::uint32_t begin = 0, end = 0;
+        Vec3 middle;                      ///< mean, by area
+        Vec3 dipole;                      ///< sum of area vectors
+        double radius = 0;                ///< no corner is farther from the middle
+        std::int64_t behind = 0;          ///< number of the first node that is not below this one
+        std::int64_t begin = 0, end = 0;  ///< its triangles
     };
-    std::uint32_t build(std::uint32_t begin, std::uint32_t end);
+    void build(const HalvedLeaves& subtree);
 
     const TriangleMesh& mesh_;
     std::vector<std::int64_t> order_;
-    std::vector<Node> nodes_;  ///< a node, its first half, its second half
+    std::vector<Node> nodes_;  ///< numbered by HalvedLeaves
 };
 
 /// The solid angle of a triangle seen from a point, as a part of the whole sphere.
