@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <random>
 #include <utility>
 
 namespace adaptiso::testing {
@@ -180,6 +181,35 @@ TriangleMesh withNanCoordinate(TriangleMesh mesh) {
 
 TriangleMesh withIndexOutOfRange(TriangleMesh mesh) {
     mesh.triangles.push_back({0, 1, pointCount(mesh)});
+    return mesh;
+}
+
+TriangleMesh withRandomDamage(TriangleMesh mesh, unsigned seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](std::size_t n) { return random() % n; };
+    for (int n = 0; n < 12; ++n) {
+        const std::size_t t = below(mesh.triangles.size());
+        switch (below(5)) {
+            case 0:
+                mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t));
+                break;
+            case 1:
+                std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+                break;
+            case 2: {
+                const Triangle again = mesh.triangles[t];
+                mesh.triangles.push_back(again);
+                break;
+            }
+            case 3:
+                mesh.points[mesh.triangles[t][0]] =
+                    mesh.points[mesh.triangles[below(mesh.triangles.size())][1]] +
+                    Vec3{0.01, 0.02, 0.03};
+                break;
+            default:
+                mesh.triangles[t][2] = static_cast<VertexId>(below(mesh.points.size()));
+        }
+    }
     return mesh;
 }
 

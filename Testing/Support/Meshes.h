@@ -41,6 +41,10 @@ TriangleMesh withNanCoordinate(TriangleMesh mesh);
 /// One more triangle that names a point behind the last.
 TriangleMesh withIndexOutOfRange(TriangleMesh mesh);
 
+/// With a dozen faults at random places: triangles that are missing, turned round, doubled, joined
+/// to any other point, or drawn through others by a corner.
+TriangleMesh withRandomDamage(TriangleMesh mesh, unsigned seed);
+
 /// Closed and oriented, every edge in two triangles, one vertex with two fans.
 TriangleMesh twoSpheresTouchingAtAVertex();
 /// One edge in three triangles, nothing else shared: one non-manifold edge, six boundary edges.

@@ -8,6 +8,7 @@
 #include "AdaptivePromises.h"
 #include "RandomVolumes.h"
 #include "Support/Meshes.h"
+#include "adaptiso/Extraction/Mend.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::testing {
@@ -17,7 +18,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using CgalMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
 /// \pre mesh is a 2-manifold
-bool crossesByCgal(const TriangleMesh& mesh) {
+CgalMesh asCgalSurface(const TriangleMesh& mesh) {
     CgalMesh cgal;
     for (const Vec3& p : mesh.points) cgal.add_vertex({p.x, p.y, p.z});
     for (const Triangle& t : mesh.triangles) {
@@ -27,7 +28,12 @@ bool crossesByCgal(const TriangleMesh& mesh) {
         cgal.add_face(corner(0), corner(1), corner(2));
     }
     EXPECT_EQ(cgal.number_of_faces(), mesh.triangles.size());
-    return CGAL::Polygon_mesh_processing::does_self_intersect(cgal);
+    return cgal;
+}
+
+/// \pre mesh is a 2-manifold
+bool crossesByCgal(const TriangleMesh& mesh) {
+    return CGAL::Polygon_mesh_processing::does_self_intersect(asCgalSurface(mesh));
 }
 
 bool crossesByUs(const TriangleMesh& mesh) {
@@ -60,6 +66,19 @@ TEST(CgalReferee, FindsNoCrossingOfTheAdaptiveMethod) {
     for (std::uint64_t seed = 5000; seed < 5300; ++seed) {
         const AdaptiveCase adaptive = adaptiveCase(seed, 10);
         EXPECT_TRUE(keepsAdaptivePromises(adaptive, crossesByCgal)) << describe(seed, adaptive);
+    }
+}
+
+TEST(CgalReferee, FindsMendedMeshesClosedWithoutCrossing) {
+    for (unsigned seed = 100; seed < 130; ++seed) {
+        TriangleMesh mesh = seed % 2 == 0 ? icosphere(3) : torusMesh(40, 20, 2, 0.8);
+        mesh.normals.clear();
+        MendOptions options;
+        options.maxErrorMm = 0.05;
+        options.maxHoleMm = 10;
+        const Mended mended = mend(withRandomDamage(mesh, seed), options);
+        EXPECT_FALSE(crossesByCgal(mended.mesh)) << "seed " << seed;
+        EXPECT_TRUE(CGAL::is_closed(asCgalSurface(mended.mesh))) << "seed " << seed;
     }
 }
 

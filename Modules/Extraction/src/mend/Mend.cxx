@@ -44,9 +44,9 @@ double checkedBound(const MendOptions& options, double diagonal) {
     if (!(bound > 0) || !std::isfinite(bound)) {
         throw InvalidInput("mend: maxErrorMm must be more than 0");
     }
-    if (bound < 1e-6 * diagonal) {
+    if (bound < MendOptions::kLeastOfDiagonal * diagonal) {
         throw InvalidInput("mend: maxErrorMm is " + formatShort(bound) +
-                           ", less than a millionth of the mesh's diagonal");
+                           ", less than a hundred-thousandth of the mesh's diagonal");
     }
     if (options.maxHoleMm && !(*options.maxHoleMm >= 0)) {
         throw InvalidInput("mend: maxHoleMm must not be negative");

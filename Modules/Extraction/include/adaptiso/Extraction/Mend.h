@@ -12,8 +12,8 @@ namespace adaptiso {
 /// Aims of mend(). Lengths are in the mesh's own unit, which need not be the millimetre.
 struct MendOptions {
     /// Bound of the distance between input and result, both ways, but for what MendStatistics
-    /// lists. Empty: kPartOfDiagonal of the diagonal of the mesh's box. \pre > 0, at least 1e-6 of
-    /// the diagonal
+    /// lists. Empty: kPartOfDiagonal of the diagonal of the mesh's box. \pre at least
+    /// kLeastOfDiagonal of it
     std::optional<double> maxErrorMm;
     /// Widest hole to close: the diagonal of the box around what closes it. Empty: kHoleOfDiagonal
     /// of the mesh's diagonal. \pre >= 0
@@ -21,7 +21,8 @@ struct MendOptions {
     bool leavesHolesOpen = false;  ///< wider holes stay open; otherwise they are refused
     ProgressCallback progress;     ///< called as the work goes on; may be empty
 
-    static constexpr double kPartOfDiagonal = 0.002, kHoleOfDiagonal = 0.05;
+    static constexpr double kPartOfDiagonal = 0.002, kHoleOfDiagonal = 0.05,
+                            kLeastOfDiagonal = 1e-5;
 };
 
 /// A stretch of surface that the bound does not hold for.
