@@ -51,12 +51,6 @@ void checkOutputs(SimplifyRun& run) {
     plan.check(command.common, command.report);
 }
 
-void summarize(const TriangleMesh& mesh, SurfaceSummary& summary) {
-    summary.triangles = std::ssize(mesh.triangles);
-    summary.vertices = std::ssize(mesh.points);
-    summary.areaMm2 = surfaceArea(mesh);
-}
-
 std::vector<PointData> readData(SimplifyRun& run) {
     std::vector<PointData> all;
     for (const DataSummary& summary : run.data) {
@@ -155,41 +149,12 @@ struct TakenValues {
     std::vector<PointData> data;
 };
 
-/// The input's arrays that the output's format holds; a warning names the others.
-std::vector<const PointArray*> heldArrays(const MeshFile& input, SimplifyRun& run) {
-    const MeshFormat& format = *run.output.format;
-    std::vector<const PointArray*> held;
-    std::string others;
-    for (const PointArray& array : input.pointArrays) {
-        const bool isFirstColor =
-            std::holds_alternative<std::vector<Color>>(array.values) && held.empty();
-        if (format.holdsPointArrays || (format.holdsColors && isFirstColor)) {
-            held.push_back(&array);
-        } else {
-            addPart(others, array.name);
-        }
-    }
-    if (!others.empty()) {
-        run.warnings.push_back({"array-left-out",
-                                std::string(format.name) + " holds no values at points" +
-                                    (format.holdsColors ? " but colours" : "") +
-                                    "; left out: " + others,
-                                baseName(run.output.file)});
-    }
-    if (!input.arraysLeftOut.empty()) {
-        run.warnings.push_back({"array-left-out",
-                                "values of triangles, text and arrays of more than nine "
-                                "components are not carried over; left out: " +
-                                    joined(input.arraysLeftOut),
-                                baseName(run.input.file)});
-    }
-    return held;
-}
-
 TakenValues takeValues(const MeshFile& input, const std::vector<PointData>& data,
                        const TriangleMesh& result, SimplifyRun& run) {
     TakenValues taken;
-    const std::vector<const PointArray*> held = heldArrays(input, run);
+    const std::vector<const PointArray*> held =
+        heldArrays(input, *run.output.format, baseName(run.input.file), baseName(run.output.file),
+                   run.warnings);
     if (data.empty() && held.empty()) return taken;
     const PointTransfer transfer(input.mesh, result);
     for (const PointArray* const array : held) {
@@ -220,16 +185,6 @@ void requireDigits(const SimplifyRun& run) {
     const auto fault =
         roundingFault(run.roundingMm, *run.command.aim.maxErrorMm, *run.output.format);
     if (fault) throw InvalidInput(baseName(run.output.file) + ": " + *fault);
-}
-
-/// Upper bound on the rounding of doubles on the way to the output's frame and back.
-double frameRoundingMm(const TriangleMesh& mesh, const FrameChange& change) {
-    double largest = 0;
-    if (!change.move) return largest;
-    const AffineTransform back = inverse(*change.move);
-    for (const Vec3& p : mesh.points)
-        largest = std::max(largest, norm(back((*change.move)(p)) - p));
-    return largest;
 }
 
 /// Writes surface and values under their temporary names. \return  the surface as it can be read
@@ -269,7 +224,7 @@ void finish(Simplified result, const MeshFile& input, const std::vector<PointDat
     run.stage("verify", [&] {
         summarize(written.mesh, run.output);
         verify({input.mesh, result.mesh, change.undo(std::move(written.mesh)),
-                run.roundingMm + frameRoundingMm(result.mesh, change)},
+                run.roundingMm + change.roundingMm(result.mesh)},
                run);
         requireDigits(run);
     });
@@ -296,13 +251,8 @@ void requireProvable(const TriangleMesh& mesh, const SimplifyCommand& command) {
 }
 
 FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
-    const FrameChange change = naming(baseName(run.input.file), [&] {
-        return changeFrame(input, run.command.frame, *run.output.format);
-    });
-    if (change.frame == CoordinateFrame::Voxel && !run.output.format->holdsVoxelFrame) {
-        throw UsageError(run.output.file.string() + ": " + std::string(run.output.format->name) +
-                         " holds points in mm only, not voxel indices");
-    }
+    const FrameChange change =
+        changeFrame(input, run.input.file, run.command.frame, run.output.file);
     if (change.isSaid) run.output.frame = change.frame;
     return change;
 }

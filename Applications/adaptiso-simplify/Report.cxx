@@ -16,19 +16,6 @@
 namespace adaptiso::simplifier {
 namespace {
 
-Json surfaceJson(const SurfaceSummary& surface) {
-    const TopologyReport& topology = surface.topology;
-    return {{"file", baseName(surface.file)},
-            {"format", surface.format->name},
-            {"coordinates", frameJson(surface.frame)},
-            {"triangles", surface.triangles},
-            {"vertices", surface.vertices},
-            {"components", std::ssize(topology.components)},
-            {"genus", orNull(topology.genus())},
-            {"closed", topology.isClosed()},
-            {"areaMm2", number(surface.areaMm2)}};
-}
-
 Json findingsJson(const std::vector<Finding>& findings) {
     Json list = Json::array();
     for (const Finding& finding : findings) {
@@ -84,10 +71,6 @@ Json dataJson(const SimplifyRun& run) {
                         {"labels", data.areLabels}});
     }
     return list;
-}
-
-std::string frameText(const std::optional<CoordinateFrame>& frame) {
-    return frame ? std::string(toString(*frame)) : "frame not said";
 }
 
 void printInput(std::ostream& out, const SimplifyRun& run) {

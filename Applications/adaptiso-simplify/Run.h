@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "Common/ProgramRun.h"
+#include "Common/SurfaceChange.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
@@ -47,16 +48,6 @@ std::vector<Finding> findTopologyFaults(const TriangleMesh& mesh, const Topology
 /// Triangles that cross others, or may.
 std::optional<Finding> crossingFinding(const TriangleMesh& mesh,
                                        const CrossingTriangles& triangles);
-
-/// A surface as a file has it.
-struct SurfaceSummary {
-    std::filesystem::path file;
-    const MeshFormat* format = nullptr;
-    std::optional<CoordinateFrame> frame;  ///< empty: the file does not say
-    std::int64_t triangles = 0, vertices = 0;
-    TopologyReport topology;
-    double areaMm2 = 0;
-};
 
 /// Values that were taken along in a file of their own.
 struct DataSummary {
@@ -113,28 +104,6 @@ std::filesystem::path surfaceFile(const std::filesystem::path& output,
 std::filesystem::path dataFile(const std::filesystem::path& data,
                                const std::filesystem::path& surface);
 
-/// How the points of a file go to those of another.
-struct FrameChange {
-    CoordinateFrame frame{};              ///< of the output
-    bool isSaid = true;                   ///< the output may say so
-    std::optional<AffineTransform> move;  ///< empty: the points stay as they are, to the bit
-
-    TriangleMesh apply(const TriangleMesh& mesh) const {
-        return move ? transformed(mesh, *move) : mesh;
-    }
-    TriangleMesh undo(TriangleMesh mesh) const {
-        return move ? transformed(mesh, inverse(*move)) : std::move(mesh);
-    }
-};
-
-/// \param input   a file as read
-/// \param wanted  empty: the input's frame
-/// \throws InvalidInput  the file does not say its frame, which the output has to know, or the
-/// volume
-///                       that a frame belongs to
-FrameChange changeFrame(const MeshFile& input, std::optional<CoordinateFrame> wanted,
-                        const MeshFormat& output);
-
 /// A frame that a page can show: LPS mm, or what is like it but for where it lies.
 struct PageFrame {
     AffineTransform toLps;
@@ -143,9 +112,7 @@ struct PageFrame {
 
 PageFrame pageFrame(const MeshFile& input);
 
-/// Values at the points of the input as the result has them. Numbers and colours are mixed; whole
-/// numbers, which may be labels, are those of the nearest corner.
-PointArray transferred(const PointArray& array, const PointTransfer& transfer);
+/// As transferred() of an array in the surface's own file.
 PointData transferred(PointData data, const PointTransfer& transfer);
 
 /// A surface as written, and what it is checked against.

@@ -8,8 +8,8 @@ import struct
 from support import BAD_INPUT, CHECK_FAILED, OK, USAGE, lines, main
 from compareSupport import LPS, RAS, TKRAS, VOXEL
 from headDefects import cube, icosphere
-from simplifySupport import (README, SimplifyTest, border_points, patch, ply, read_pial,
-                             write_pial)
+from simplifySupport import (SimplifyTest, border_points, documented_keys, keys_of, patch, ply,
+                             read_pial, write_pial)
 
 NAN = float("nan")
 BALL = icosphere(10, 4)  # 5,120 triangles
@@ -436,29 +436,6 @@ class Batches(SimplifyTest):
         self.assertTrue(self.path("x-one.vtp").is_file() and self.path("x-two.vtp").is_file())
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertEqual(lines[0]["outputs"], ["x-one.vtp"])
-
-
-def documented_keys():
-    """The keys in the first column of README.md's table; a key that begins with a dot belongs to
-    each of the parents of the row that ends in a colon before it."""
-    section = README.read_text().split("## The report")[1]
-    keys, parents = set(), []
-    for cell, what in re.findall(r"^\| (`.*?`) \| (.*) \|$", section, re.MULTILINE):
-        names = re.findall(r"`([^`]+)`", cell)
-        if what.endswith(":"):
-            parents = names
-            continue
-        for name in names:
-            keys |= {parent + name for parent in parents} if name.startswith(".") else {name}
-    return keys
-
-
-def keys_of(value, path=""):
-    """The paths of all leaves; lists are leaves."""
-    if not isinstance(value, dict):
-        return {path}
-    return {leaf for key, inner in value.items()
-            for leaf in keys_of(inner, f"{path}.{key}" if path else key)}
 
 
 class Reports(SimplifyTest):

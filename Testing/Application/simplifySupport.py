@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import struct
 import subprocess
 
@@ -106,6 +107,29 @@ def read_pial(path):
     at += 12 * count
     triangles = [struct.unpack(">3i", content[at + 12 * n:at + 12 * n + 12]) for n in range(faces)]
     return points, triangles, content[at + 12 * faces:]
+
+
+def documented_keys(readme=README):
+    """The keys in the first column of a README.md's table; a key that begins with a dot belongs to
+    each of the parents of the row that ends in a colon before it."""
+    section = readme.read_text().split("## The report")[1]
+    keys, parents = set(), []
+    for cell, what in re.findall(r"^\| (`.*?`) \| (.*) \|$", section, re.MULTILINE):
+        names = re.findall(r"`([^`]+)`", cell)
+        if what.endswith(":"):
+            parents = names
+            continue
+        for name in names:
+            keys |= {parent + name for parent in parents} if name.startswith(".") else {name}
+    return keys
+
+
+def keys_of(value, path=""):
+    """The paths of all leaves; lists are leaves."""
+    if not isinstance(value, dict):
+        return {path}
+    return {leaf for key, inner in value.items()
+            for leaf in keys_of(inner, f"{path}.{key}" if path else key)}
 
 
 class SimplifyTest(ApplicationTest):
