@@ -29,6 +29,7 @@ constexpr Entry kPrograms[] = {
     {"check", "soundness of surfaces, and a self-test"},
     {"compare", "distances between two surfaces"},
     {"simplify", "fewer triangles within a stated distance"},
+    {"mend", "a sound solid of any mesh"},
     {"bids", "all of these for a BIDS dataset"},
     {"giant", "the surface of a volume larger than memory"},
 };

@@ -226,8 +226,8 @@ def main():
     said = json.loads(subprocess.run([program, "--help-json"], check=True, text=True,
                                      stdout=subprocess.PIPE).stdout)
     programs = ["adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
-                "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids",
-                "adaptiso-giant"]
+                "adaptiso-compare", "adaptiso-simplify", "adaptiso-mend",
+                "adaptiso-bids", "adaptiso-giant"]
     text = {"man": lambda: manual_page(said, programs), "bash": lambda: bash_completion(said),
             "zsh": lambda: zsh_completion(said)}[kind]()
     data = text.encode()

@@ -7,7 +7,8 @@ import subprocess
 from support import BIN, SOURCE, USAGE, ApplicationTest, ball, main, write_nifti
 
 PROGRAMS = ("adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
-            "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids", "adaptiso-giant")
+            "adaptiso-compare", "adaptiso-simplify", "adaptiso-mend", "adaptiso-bids",
+            "adaptiso-giant")
 README = SOURCE / "Applications" / "adaptiso-mesh" / "README.md"
 
 

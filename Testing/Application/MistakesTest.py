@@ -21,6 +21,7 @@ PROGRAMS = {
     "adaptiso-check": ("IN", "--report", "OUT"),
     "adaptiso-compare": ("IN", "good.off", "--colored", "OUT"),
     "adaptiso-simplify": ("IN", "--triangles", "60", "-o", "OUT"),
+    "adaptiso-mend": ("IN", "-o", "OUT"),
     "adaptiso-giant": ("plan", "OUT", "--input", "IN", "--iso", "100"),
     "adaptiso-bids": ("IN", "OUT", "participant", "--surfaces", "iso=100", "--no-pictures"),
 }
@@ -125,15 +126,17 @@ class Mistakes(WithInputs):
             if program in ("adaptiso-giant", "adaptiso-bids"):
                 continue
             with self.subTest(program):
-                command = [*self.command(program), "--json", "there/../x.html"]
-                if program != "adaptiso-check":
-                    command += ["--report", "x.html"]
+                name = "x.ply" if program == "adaptiso-mend" else "x.html"  # it writes no page
+                command = [*self.command(program), "--json", f"there/../{name}"]
+                own = {"adaptiso-check": "--report", "adaptiso-mend": "-o"}.get(program)
+                if own is None:
+                    command += ["--report", name]
                 else:
-                    command[command.index("--report") + 1] = "x.html"
+                    command[command.index(own) + 1] = name
                 done = self.run_program(program, *command)
                 self.assertEqual(done.returncode, USAGE, done.stderr)
-                self.assertIn("x.html: is the name of another output too", done.stderr)
-                self.assertFalse(self.path("x.html").exists())
+                self.assertIn(f"{name}: is the name of another output too", done.stderr)
+                self.assertFalse(self.path(name).exists())
 
     def test_a_folder_of_others_is_kept(self):
         self.path("full").mkdir()

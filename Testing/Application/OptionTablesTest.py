@@ -28,7 +28,7 @@ def table(program):
 
 class OptionTables(ApplicationTest):
     def test_say_what_the_programs_say(self):
-        self.assertEqual(len(PROGRAMS), 8)
+        self.assertEqual(len(PROGRAMS), 9)
         for program in PROGRAMS:
             with self.subTest(program):
                 path = SOURCE / "Applications" / program / "README.md"

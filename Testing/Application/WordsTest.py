@@ -308,7 +308,8 @@ class Help(ApplicationTest):
 
 
     def test_short_names_every_group(self):
-        for program in (MESH, CHECK, COMPARE, BEM, SIMPLIFY, "adaptiso-labels", "adaptiso-bids", "adaptiso-giant"):
+        for program in (MESH, CHECK, COMPARE, BEM, SIMPLIFY, "adaptiso-mend", "adaptiso-labels", "adaptiso-bids",
+                        "adaptiso-giant"):
             with self.subTest(program):
                 text = subprocess.run([BIN / program, "-h"], text=True, check=True, capture_output=True).stdout
                 self.assertNotRegex(text, r"(?m)^:")

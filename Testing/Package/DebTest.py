@@ -16,7 +16,7 @@ VERSION = os.environ["ADAPTISO_VERSION"]
 REVISION = f"{VERSION}-1"
 MOMENT = 1700000000  # s since 1970: 2023-11-14 22:13:20 UTC
 PROGRAMS = ("adaptiso", "adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
-            "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids",
+            "adaptiso-compare", "adaptiso-simplify", "adaptiso-mend", "adaptiso-bids",
             "adaptiso-giant")
 
 

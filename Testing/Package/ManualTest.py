@@ -13,7 +13,7 @@ from support import BIN, ApplicationTest, main
 
 MADE = Path(os.environ["ADAPTISO_BUILD"]) / "Applications" / "manual"
 PROGRAMS = ("adaptiso", "adaptiso-mesh", "adaptiso-labels", "adaptiso-bem", "adaptiso-check",
-            "adaptiso-compare", "adaptiso-simplify", "adaptiso-bids",
+            "adaptiso-compare", "adaptiso-simplify", "adaptiso-mend", "adaptiso-bids",
             "adaptiso-giant")
 
 

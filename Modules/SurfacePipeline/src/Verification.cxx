@@ -31,15 +31,20 @@ bool hasSameShape(const TopologyReport& a, const TopologyReport& b) {
            eulerCharacteristic(a) == eulerCharacteristic(b);
 }
 
+void requireWithin(double measuredMm, double boundMm, const TriangleMesh& surface,
+                   const TriangleMesh& original, const std::string& name,
+                   const std::string& begin) {
+    boundMm += kMeasuring * extentOf(original);
+    if (measuredMm > boundMm) boundMm += measuringErrorMm(surface) + measuringErrorMm(original);
+    if (measuredMm <= (1 + kRounding) * boundMm) return;
+    throw InternalError(begin + "a point lies " + formatNumber(measuredMm) + " mm from " + name +
+                        ", not " + formatNumber(boundMm));
+}
+
 Verification verifyDistance(const TriangleMesh& surface, const TriangleMesh& original,
                             double boundMm, const std::string& name, const std::string& begin) {
     const DistanceStatistics distance = surfaceDistance(surface, original).combined;
-    boundMm += kMeasuring * extentOf(original);
-    if (distance.maxMm > boundMm) boundMm += measuringErrorMm(surface) + measuringErrorMm(original);
-    if (!(distance.maxMm <= (1 + kRounding) * boundMm)) {
-        throw InternalError(begin + "a point lies " + formatNumber(distance.maxMm) + " mm from " +
-                            name + ", not " + formatNumber(boundMm));
-    }
+    requireWithin(distance.maxMm, boundMm, surface, original, name, begin);
     return {distance.measured(), distance.maxMm};
 }
 

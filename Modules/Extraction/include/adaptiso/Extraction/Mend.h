@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
 
@@ -24,6 +25,9 @@ struct MendOptions {
     static constexpr double kPartOfDiagonal = 0.002, kHoleOfDiagonal = 0.05,
                             kLeastOfDiagonal = 1e-5;
 };
+
+/// A row for each.
+const Options<MendOptions>& mendOptions();
 
 /// A stretch of surface that the bound does not hold for.
 struct MendedPlace {

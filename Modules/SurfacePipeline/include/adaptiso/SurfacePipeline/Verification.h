@@ -20,9 +20,15 @@ std::int64_t eulerCharacteristic(const TopologyReport& topology);
 /// Same components and holes, as far as their numbers say.
 bool hasSameShape(const TopologyReport& a, const TopologyReport& b);
 
-/// Measures a surface that lies within `boundMm` of `original`, both ways, but for the rounding of
-/// coordinates and distances. \param name  of the original: "the input"
+/// Checks the largest distance that was measured between a surface and `original`, in one direction
+/// or both, against a bound, but for the rounding of coordinates and distances.
+/// \param name  of what it was measured from: "the input"
 /// \throws InternalError  "a point lies 0.3 mm from the input, not 0.2", after `begin`
+void requireWithin(double measuredMm, double boundMm, const TriangleMesh& surface,
+                   const TriangleMesh& original, const std::string& name, const std::string& begin);
+
+/// Measures a surface that lies within `boundMm` of `original`, both ways.
+/// \throws InternalError  as requireWithin()
 Verification verifyDistance(const TriangleMesh& surface, const TriangleMesh& original,
                             double boundMm, const std::string& name, const std::string& begin);
 

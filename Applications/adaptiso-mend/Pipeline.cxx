@@ -1,0 +1,213 @@
+#include "Pipeline.h"
+
+#include <array>
+#include <fstream>
+#include <utility>
+
+#include "Common/CommonFrame.h"
+#include "Common/Json.h"
+#include "Common/Naming.h"
+#include "Common/RunApp.h"
+#include "Common/Warnings.h"
+#include "Run.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
+#include "adaptiso/SurfacePipeline/StoredMesh.h"
+
+namespace adaptiso::mender {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names the output and checks it before a file is read.
+void checkOutputs(MendRun& run) {
+    const MendCommand& command = run.command;
+    run.input.file = command.input;
+    OutputPlan plan(std::array{command.input});
+    if (!command.output.empty()) {
+        run.output.file = command.output;
+        run.output.format = &meshFormatOf(command.output);
+        plan.add("--output", command.output);
+    }
+    plan.check(command.common, command.report);
+}
+
+void requireMendable(const MeshFile& input, const MendRun& run) {
+    if (!(run.input.areaMm2 > 0)) {
+        throw InvalidInput(run.input.file.string() +
+                           ": its triangles have no area, so there is nothing to mend");
+    }
+    if (input.frame == CoordinateFrame::Voxel) {
+        throw InvalidInput(run.input.file.string() +
+                           ": is in voxel indices, in which a distance is no length; bring it to "
+                           "mm first (adaptiso-simplify --coordinates ras --max-error ...)");
+    }
+}
+
+void warnOfSize(const TriangleMesh& mesh, MendRun& run) {
+    if (!run.command.aim.maxErrorMm) return;
+    const auto warning = boundOverSize("--max-error", *run.command.aim.maxErrorMm,
+                                       norm(boundingBox(mesh).size()), baseName(run.input.file));
+    if (warning) run.warnings.push_back(*warning);
+}
+
+/// What mend() says, in the words of the command line.
+std::string inWordsOfOptions(std::string text) {
+    constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+        {"mend: ", ""}, {"maxHoleMm", "--max-hole"}, {"maxErrorMm", "--max-error"}};
+    for (const auto& [ours, theirs] : kWords) {
+        const std::size_t at = text.find(ours);
+        if (at != std::string::npos) text.replace(at, ours.size(), theirs);
+    }
+    return text;
+}
+
+/// The mended mesh; where it can't be mended as asked, the run gets the reason.
+TriangleMesh mendSurface(const TriangleMesh& mesh, MendRun& run) {
+    MendOptions options = run.command.aim;
+    options.progress = run.progress.callback();
+    try {
+        Mended result = mend(mesh, options);
+        run.statistics = std::move(result.statistics);
+        return std::move(result.mesh);
+    } catch (const InvalidInput& refusal) {
+        run.refusal = inWordsOfOptions(refusal.what());
+        return {};
+    }
+}
+
+bool isGzip(const fs::path& file) {
+    std::array<char, 2> head{};
+    std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+    return head == std::array{'\x1f', '\x8b'};
+}
+
+/// A sound mesh keeps its very bytes, where nothing else about the file is to change.
+bool isCopied(const MeshFile& input, const FrameChange& change, const MendRun& run) {
+    return run.statistics.wasSound && input.format == run.output.format && !change.move &&
+           !run.command.frame && run.command.inputCoordinates.empty() && !isGzip(run.input.file);
+}
+
+void copyFile(MendRun& run) {
+    AtomicOutput& output = run.addOutput(run.output.file);
+    output.write([&](const fs::path& path) {
+        fs::copy_file(run.input.file, path, fs::copy_options::overwrite_existing);
+    });
+    run.bytes = fs::file_size(output.temporary());
+    run.isCopy = true;
+}
+
+std::vector<PointArray> takeValues(const MeshFile& input, const TriangleMesh& result,
+                                   MendRun& run) {
+    std::vector<PointArray> taken;
+    const auto held = heldArrays(input, *run.output.format, baseName(run.input.file),
+                                 baseName(run.output.file), run.warnings);
+    if (held.empty()) return taken;
+    const PointTransfer transfer(input.mesh, result);
+    for (const PointArray* const array : held) {
+        taken.push_back(transferred(*array, transfer));
+        run.keptArrays.push_back(array->name);
+    }
+    return taken;
+}
+
+/// Writes the surface under its temporary name. \return  as it can be read
+MeshFile writeFile(const TriangleMesh& mesh, std::vector<PointArray> values, const MeshFile& input,
+                   const FrameChange& change, MendRun& run) {
+    MeshWriteOptions write;
+    write.frame = change.frame;
+    write.volume = input.volume;
+    write.pointArrays = std::move(values);
+    write.isInFrame = true;
+    write.saysFrame = change.isSaid;
+    AtomicOutput& output = run.addOutput(run.output.file);
+    output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
+    run.bytes = fs::file_size(output.temporary());
+    return readMesh(output.temporary());
+}
+
+/// \throws InvalidInput  the output's digits alone are beyond the bound
+void requireDigits(const MendRun& run) {
+    const auto fault = roundingFault(run.roundingMm, run.statistics.maxErrorMm, *run.output.format);
+    if (fault) throw InvalidInput(baseName(run.output.file) + ": " + *fault);
+}
+
+void warnOfRounding(MendRun& run) {
+    const double bound = std::max(run.resultToInputMm(), run.inputToResultMm());
+    const auto warning =
+        roundingWarning(baseName(run.output.file), bound, run.statistics.maxErrorMm, run.roundingMm,
+                        *run.output.format);
+    if (warning) run.warnings.push_back(*warning);
+}
+
+/// Writes the result, with the values at its points, in the frame that is asked for.
+void finish(TriangleMesh result, const MeshFile& input, MendRun& run) {
+    const FrameChange change =
+        changeFrame(input, run.input.file, run.command.frame, run.output.file);
+    if (change.isSaid) run.output.frame = change.frame;
+    if (isCopied(input, change, run)) {
+        summarize(result, run.output);
+        run.output.topology = run.input.topology;
+        return run.stage("write", [&] { copyFile(run); });
+    }
+    std::vector<PointArray> values =
+        run.stage("values", [&] { return takeValues(input, result, run); });
+    MeshFile written = run.stage("write", [&] {
+        if (!run.output.format->holdsNormals) result.normals.clear();
+        TriangleMesh settled = result;
+        run.roundingMm = settleRounding(settled, run.output.format->precision,
+                                        change.move.value_or(AffineTransform{}))
+                             .roundingMm;
+        return writeFile(change.apply(settled), std::move(values), input, change, run);
+    });
+    run.stage("verify", [&] {
+        summarize(written.mesh, run.output);
+        verify({input.mesh, change.undo(std::move(written.mesh)),
+                run.roundingMm + change.roundingMm(result)},
+               result, run);
+        requireDigits(run);
+    });
+    warnOfRounding(run);
+}
+
+}  // namespace
+
+int runMend(const MendCommand& command) {
+    MendRun run(command);
+    checkOutputs(run);
+
+    const MeshFile input = run.stage("read", [&] {
+        return readMesh(command.input,
+                        {.keepsPointArrays = true,
+                         .inputCoordinates = statedFrame(command.inputCoordinates, 0)});
+    });
+    addWarnings(run.warnings, input.warnings, baseName(command.input));
+    run.input.format = input.format;
+    run.input.frame = input.frame;
+    summarize(input.mesh, run.input);
+    requireMendable(input, run);
+    warnOfSize(input.mesh, run);
+    run.stage("check", [&] { run.input.topology = checkTopology(input.mesh); });
+
+    TriangleMesh result = run.stage("mend", [&] { return mendSurface(input.mesh, run); });
+    if (!run.isMended()) {
+        run.verdict = {kExitCheckFailed,
+                       baseName(command.input) + ": can't be mended as asked: " + run.refusal};
+    } else if (command.isDryRun) {
+        run.output.format = input.format;
+        run.output.frame = input.frame;
+        summarize(result, run.output);
+        run.stage("verify", [&] { verify({input.mesh, result, 0}, result, run); });
+    } else {
+        finish(std::move(result), input, run);
+    }
+    if (!run.writesSurface()) run.dropOutputs();
+    if (run.writesSurface()) {
+        run.next = "adaptiso-check " + shellQuoted(run.output.file.string());
+    }
+    run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
+    return run.end(run.writesSurface() ? run.output.file.string() + " is written"
+                                       : "no surface is written");
+}
+
+}  // namespace adaptiso::mender

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "Common/CommonOptions.h"
+#include "Common/ReportOutput.h"
+#include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
+
+namespace adaptiso::mender {
+
+/// Options of adaptiso-mend.
+struct MendCommand {
+    std::filesystem::path input;
+    std::vector<CoordinateFrame> inputCoordinates;  ///< at most one; empty: as the input says
+    MendOptions aim;
+    bool isDryRun = false;                 ///< no surface is written, `output` is left as it is
+    std::filesystem::path output;          ///< empty: isDryRun
+    std::optional<CoordinateFrame> frame;  ///< empty: the input's own
+    ReportOptions report;                  ///< none
+    CommonOptions common;
+};
+
+/// Reads a surface, mends it, takes the values at its points along, and writes it, after what was
+/// written has been read again and checked.
+/// \return kExitOk; kExitCheckFailed where it can't be mended as asked, or by --strict
+/// \throws UsageError     a format is unknown or can't hold the frame
+/// \throws FileError      the input can't be read, the output can't be written
+/// \throws InvalidInput   nothing in the input has an area, it is in voxel indices, frames that
+///                        can't be brought together, coordinates that the output's format holds
+///                        too coarsely
+/// \throws InternalError  the result breaks a promise
+int runMend(const MendCommand& command);
+
+}  // namespace adaptiso::mender

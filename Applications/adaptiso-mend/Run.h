@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Common/ProgramRun.h"
+#include "Common/SurfaceChange.h"
+#include "Pipeline.h"
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/SurfacePipeline/Verification.h"
+
+namespace adaptiso::mender {
+
+/// One run of the program, for the reports.
+struct MendRun : ProgramRun {
+    explicit MendRun(const MendCommand& given)
+        : ProgramRun("adaptiso-mend", given.common, given.report, "so no surface was written"),
+          command(given) {}
+
+    const MendCommand& command;
+    SurfaceSummary input{};
+    SurfaceSummary output{};  ///< the result; triangles 0 if there is none
+    MendStatistics statistics{};
+    std::string refusal{};                       ///< why it can't be mended as asked
+    bool isCopy = false;                         ///< the output has the input's bytes
+    double roundingMm = 0;                       ///< largest move of a point by the output's digits
+    std::optional<Verification> verification{};  ///< of the surface as written
+    std::uintmax_t bytes = 0;                    ///< of the output
+    std::vector<std::string> keptArrays{};       ///< values at points
+
+    bool isMended() const { return refusal.empty(); }
+    bool writesSurface() const { return isMended() && !command.isDryRun && !failsStrict(); }
+    double resultToInputMm() const { return statistics.resultToInputMm + roundingMm; }
+    double inputToResultMm() const { return statistics.inputToResultMm + roundingMm; }
+};
+
+/// A surface, and what it is checked against.
+struct VerifiedSurface {
+    const TriangleMesh& input;  ///< as read
+    TriangleMesh surface;       ///< the result as written, in the input's frame
+    double roundingMm = 0;      ///< at most, between a point of it and of the result as computed
+};
+
+/// Checks what is promised of the result, as written, by code that it was not made by: it is
+/// closed, but for holes left open, 2-manifold, oriented, faces outward, crosses itself nowhere,
+/// and points sampled on either surface lie within the proved bound of the other, where all of it
+/// does. \param result  as computed; may be the surface itself \throws InvalidInput   the format
+/// has too few digits for the result \throws InternalError  a promise is broken
+void verify(const VerifiedSurface& surface, const TriangleMesh& result, MendRun& run);
+
+/// The report of --json, as README.md describes it, with a line break at the end.
+std::string jsonReport(const MendRun& run);
+
+/// Prints the text report.
+void printReport(std::ostream& out, const MendRun& run);
+
+}  // namespace adaptiso::mender

@@ -1,0 +1,66 @@
+#include <string>
+
+#include "Common/CommonFrame.h"
+#include "Common/OptionValues.h"
+#include "Common/RunApp.h"
+#include "Pipeline.h"
+#include "Run.h"
+#include "adaptiso/Core/Memory.h"
+#include "adaptiso/MeshIO/Formats.h"
+
+namespace adaptiso::mender {
+namespace {
+
+void checkCombinations(const MendCommand& command) {
+    if (command.input.empty()) throw UsageError("MESH is missing: the surface to mend");
+    checkInputCoordinates(command.inputCoordinates, 1);
+    if (command.output.empty() && !command.isDryRun) {
+        throw UsageError("--output is missing: the file to write (or --dry-run)");
+    }
+}
+
+constexpr const char* kFooter = R"(Examples:
+  adaptiso-mend scan.ply -o solid.ply
+  adaptiso-mend scan.ply --dry-run
+      what is wrong with it, and what would be changed; nothing is written
+  adaptiso-mend lh.pial --max-error 0.1 -o mended/lh.pial
+  adaptiso-mend mask.stl --max-hole 20 -o mask.vtp
+      holes up to 20 mm wide are closed; --open leaves wider ones open
+
+Exit codes: 0 mended, or sound already, 1 it can't be mended as asked, or a
+warning with --strict, 2 wrong usage, 3 bad input (or no memory or disk left),
+4 internal error. When it is not 0, no surface was written.)";
+
+Program mendProgram() {
+    return {"adaptiso-mend",
+            "Makes a solid of any mesh within a proved distance: closed, 2-manifold, oriented, "
+            "crossing itself nowhere.",
+            kFooter};
+}
+
+void declareMendOptions(CLI::App& app, MendCommand& command) {
+    OptionGroup(app).text(
+        "MESH", "", command.input,
+        "A mesh of triangles or polygons, in any format adaptiso-mesh writes, with any faults");
+    declareInputCoordinates(OptionGroup(app, "Input"), command.inputCoordinates, "the mesh");
+    OptionGroup(app, "Extent").rows(mendOptions(), command.aim);
+    const OptionGroup output(app, "Output");
+    output.text("-o,--output", "OUT", command.output,
+                "The file to write. The format follows from the extension: " + meshExtensions());
+    declareCoordinates(output, command.frame,
+                       "The points' frame in the file: scanner RAS mm, scanner LPS mm, or "
+                       "FreeSurfer's surface RAS mm (default: as the input has them)",
+                       {"ras", "lps", "tkras"});
+    output.flag("--dry-run", command.isDryRun, "Report only; write no surface");
+    declareCommonOptions(app, command.common, "no surface is then written, reports are");
+    afterParsing(app, [&command] { checkCombinations(command); });
+}
+
+}  // namespace
+}  // namespace adaptiso::mender
+
+int main(int argc, char** argv) {
+    adaptiso::keepFreedMemory();
+    return adaptiso::runApp(argc, argv, adaptiso::mender::mendProgram(),
+                            adaptiso::mender::declareMendOptions, adaptiso::mender::runMend);
+}

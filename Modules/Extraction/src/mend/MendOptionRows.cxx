@@ -1,0 +1,31 @@
+#include "adaptiso/Extraction/Mend.h"
+
+namespace adaptiso {
+
+const Options<MendOptions>& mendOptions() {
+    static const Options<MendOptions> kRows{
+        option<&MendOptions::maxErrorMm>(
+            {.name = "max-error",
+             .key = "maxErrorMm",
+             .label = "Largest error",
+             .valueName = "MM",
+             .help =
+                 "Largest distance, both ways, between the given surface and the result, but for "
+                 "holes that are closed and parts that are dropped, in the unit of its coordinates",
+             .standard = "0.2 % of the diagonal of the surface's box",
+             .rule = {.least = 0, .isAbove = true, .unit = "mm"}}),
+        option<&MendOptions::maxHoleMm>({.name = "max-hole",
+                                         .key = "maxHoleMm",
+                                         .label = "Widest hole to close",
+                                         .valueName = "MM",
+                                         .help = "Refuse (exit code 1) holes wider than this",
+                                         .standard = "5 % of the diagonal",
+                                         .rule = {.least = 0, .unit = "mm"}}),
+        option<&MendOptions::leavesHolesOpen>({.name = "open",
+                                               .key = "leavesHolesOpen",
+                                               .label = "Wider holes left open",
+                                               .help = "Leave wider holes open instead"})};
+    return kRows;
+}
+
+}  // namespace adaptiso

@@ -1,0 +1,212 @@
+"""adaptiso-mend: broken meshes with known solids, what is refused, frames, values, reports and the README."""
+
+import json
+import math
+import os
+import re
+import subprocess
+
+from support import BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, lines, main
+from headDefects import flipped, icosphere, soup
+from checkSupport import together, write_stl
+from simplifySupport import SimplifyTest, documented_keys, keys_of, ply, write_pial, read_pial
+
+MEND = str(BIN / "adaptiso-mend")
+README = SOURCE / "Applications" / "adaptiso-mend" / "README.md"
+BALL = icosphere(40)
+
+
+def shifted(mesh, by):
+    return [(x + by, y, z) for x, y, z in mesh[0]], mesh[1]
+
+
+def cup(mesh, height):
+    """Without what lies above."""
+    points, triangles = mesh
+    return points, [t for t in triangles if max(points[v][2] for v in t) < height]
+
+
+class MendTest(SimplifyTest):
+    def run_mend(self, *arguments):
+        return subprocess.run([MEND, *map(str, arguments)], cwd=self.folder, text=True,
+                              capture_output=True, timeout=300)
+
+    def mend(self, *arguments, code=OK):
+        """The report of a run, without a word on stderr but warnings and its error."""
+        done = self.run_mend(*arguments, "--json", "-")
+        self.assertEqual(done.returncode, code, done.stderr)
+        report = json.loads(done.stdout)
+        said = [f"warning: {warning}" for warning in lines(report["warnings"])]
+        said += [report["error"]["text"]] if report["error"] else []
+        self.assertEqual(done.stderr, "".join(f"adaptiso-mend: {line}\n" for line in said))
+        return report
+
+    def mended(self, mesh, *arguments, name="out.vtp"):
+        """The report; what was written passes every check of a solid."""
+        self.write("in.off", mesh)
+        report = self.mend("in.off", *arguments, "-o", name)
+        self.assertTrue(report["output"]["written"])
+        checked = self.check(name)
+        self.assertTrue(checked["passed"], checked["surfaces"][0]["failed"])
+        return report, checked["surfaces"][0]
+
+    def stays_out(self, code, pattern, *arguments):
+        before = self.contents()
+        done = self.run_mend(*arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertRegex(done.stderr, "^adaptiso-mend: " + pattern + ".*\n$")
+        self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertEqual(self.contents(), before)
+
+
+class Solids(MendTest):
+    def test_crossing_balls_become_their_union(self):
+        """Two balls of radius r at a distance d: their lens has the volume
+        pi (4 r + d) (2 r - d)^2 / 12."""
+        report, checked = self.mended(together(BALL, shifted(icosphere(40), 30)), "--max-error", 1)
+        self.assertGreater(report["found"]["crossingTriangles"], 0)
+        r, d = 40, 30
+        union = 2 * 4 / 3 * math.pi * r ** 3 - math.pi * (4 * r + d) * (2 * r - d) ** 2 / 12
+        # 1280 triangles enclose 1 % less than their ball; the bound is 1 mm of an area of 34,000 mm2
+        self.assertAlmostEqual(checked["volumeMm3"] / union, 0.99, delta=0.02)
+        self.assertEqual((report["output"]["genus"], report["output"]["components"]), (0, 1))
+        self.assertEqual(len(report["output"]["inner"]), 2)
+        self.assertLessEqual(max(report["output"]["resultToInputMm"],
+                                 report["output"]["inputToResultMm"]), 1)
+
+    def test_a_small_hole_is_closed_and_told(self):
+        points, triangles = BALL
+        report, checked = self.mended((points, triangles[1:]), "--max-hole", 20)
+        self.assertEqual(report["found"]["borderEdges"], 3)
+        [hole] = report["output"]["filled"]
+        middle = [sum(points[v][axis] for v in triangles[0]) / 3 for axis in range(3)]
+        middle = [-middle[0], -middle[1], middle[2]] if report["input"]["coordinates"] == "lps" else middle
+        self.assertLess(math.dist(hole["middleMm"], middle), 2)
+        self.assertEqual(checked["genus"], 0)
+
+    def test_triangles_that_share_no_vertices_and_flipped_ones(self):
+        report, checked = self.mended(soup(BALL))
+        self.assertEqual((checked["vertices"], checked["triangles"]), (642, 1280))
+        self.assertGreater(report["found"]["mergedPoints"], 0)
+        report, checked = self.mended(flipped(BALL))
+        self.assertEqual(report["found"]["flippedTriangles"], 1280)
+        self.assertGreater(checked["volumeMm3"], 0)
+
+    def test_an_inner_shell_is_dropped_and_told(self):
+        report, checked = self.mended(together(BALL, icosphere(20)))
+        self.assertEqual(checked["componentCount"], 1)
+        [inner] = report["output"]["inner"]
+        self.assertAlmostEqual(inner["areaMm2"], 4 * math.pi * 400, delta=60)
+
+
+class Sound(MendTest):
+    def test_keeps_its_bytes(self):
+        self.write("ball.off", BALL)
+        report = self.mend("ball.off", "-o", "same.off")
+        self.assertEqual((report["found"]["sound"], report["output"]["copied"]), (True, True))
+        self.assertEqual(self.path("same.off").read_bytes(), self.path("ball.off").read_bytes())
+        write_pial(self.path("lh.pial"), BALL)
+        self.mend("lh.pial", "-o", "rh.pial")
+        self.assertEqual(self.path("rh.pial").read_bytes(), self.path("lh.pial").read_bytes())
+
+    def test_is_written_in_another_format_and_frame(self):
+        self.write("ball.off", BALL)
+        report = self.mend("ball.off", "-o", "ball.ply")
+        self.assertEqual((report["found"]["sound"], report["output"]["copied"]), (True, False))
+        report = self.mend("ball.off", "--coordinates", "lps", "-o", "lps.off")
+        self.assertFalse(report["output"]["copied"])
+        self.assertEqual(report["output"]["coordinates"], "lps")
+        self.assertLess(self.compare("ball.off", "lps.off")["maxMm"], 1e-6)
+
+    def test_of_tkras_keeps_its_volume(self):
+        points, triangles = BALL
+        write_pial(self.path("lh.pial"), (points, triangles[1:]))
+        self.mend("lh.pial", "--max-hole", 20, "--max-error", 0.5, "-o", "rh.pial")
+        footer = read_pial(self.path("rh.pial"))[2]
+        self.assertIn(b"valid = 1", footer)
+        self.assertNotIn(b"doe_jane", footer)
+
+
+class Values(MendTest):
+    def test_come_from_the_nearest_place(self):
+        """A height is linear on every triangle: where the surface is kept it stays the height."""
+        points, triangles = soup(BALL)
+        file = ply((points, triangles), "property double height", [(p[2],) for p in points])
+        self.path("in.ply").write_text(file)
+        report = self.mend("in.ply", "-o", "out.ply")
+        self.assertEqual(report["output"]["values"], ["height"])
+        report = self.mend("in.ply", "-o", "out.stl")
+        self.assertEqual([warning["code"] for warning in report["warnings"]], ["array-left-out"])
+        self.mend("out.ply", "--dry-run")
+
+
+class Refusals(MendTest):
+    def test_what_can_not_be_mended_as_asked(self):
+        self.write("cup.off", cup(BALL, 20))
+        self.stays_out(CHECK_FAILED, "cup.off: can't be mended as asked: a hole near .* more than "
+                       "--max-hole, 6.93 mm", "cup.off", "--max-error", 1, "-o", "out.off")
+        report = self.mend("cup.off", "--max-error", 1, "-o", "out.off", code=CHECK_FAILED)
+        self.assertEqual((report["passed"], report["output"], report["found"]), (False, None, None))
+        report = self.mend("cup.off", "--max-error", 1, "--open", "-o", "open.off")
+        self.assertEqual((len(report["output"]["leftOpen"]), report["output"]["closed"]), (1, False))
+        self.mend("cup.off", "--max-error", 1, "--max-hole", 120, "-o", "closed.off")
+        self.assertTrue(self.check("closed.off")["passed"])
+
+    def test_usage_and_bad_input(self):
+        self.write("ball.off", BALL)
+        self.stays_out(USAGE, "--output is missing", "ball.off")
+        self.stays_out(USAGE, "MESH is missing")
+        self.stays_out(USAGE, "--max-error", "ball.off", "--max-error", 0, "-o", "out.off")
+        self.stays_out(BAD_INPUT, "", "none.off", "-o", "out.off")
+        self.stays_out(BAD_INPUT, "", "ball.off", "-o", "ball.off")
+        self.write("flat.off", ([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)]))
+        self.stays_out(BAD_INPUT, "flat.off: its triangles have no area", "flat.off", "-o", "out.off")
+        self.write("voxel.off", BALL, "voxel indices")
+        self.stays_out(BAD_INPUT, "voxel.off: is in voxel indices", "voxel.off", "-o", "out.off")
+
+
+class Reports(MendTest):
+    def test_keys_are_the_documented_ones(self):
+        self.write("two.off", together(BALL, shifted(BALL, 30)))
+        report = self.mend("two.off", "--max-error", 1, "-o", "out.vtp")
+        self.assertEqual(report["schema"], "adaptiso-mend/1")
+        self.assertEqual(keys_of(report), documented_keys(README))
+
+    def test_a_dry_run_writes_nothing_and_says_the_same(self):
+        self.write("two.off", together(BALL, shifted(BALL, 30)))
+        before = self.contents()
+        planned = self.mend("two.off", "--max-error", 1, "--dry-run", "-o", "out.vtp")
+        self.assertEqual(self.contents(), before)
+        self.assertFalse(planned["output"]["written"])
+        done = self.mend("two.off", "--max-error", 1, "-o", "out.vtp")
+        for key in ("triangles", "keptTriangles", "inner", "resultToInputMm"):
+            self.assertEqual(planned["output"][key], done["output"][key], key)
+
+    def test_is_the_same_whatever_the_number_of_threads(self):
+        self.write("two.off", together(BALL, shifted(BALL, 30)))
+        for threads in (1, 3):
+            self.mend("two.off", "--max-error", 1, "--threads", threads, "-o", f"{threads}.ply")
+        self.assertEqual(self.path("1.ply").read_bytes(), self.path("3.ply").read_bytes())
+
+
+class Readme(MendTest):
+    def test_examples_run(self):
+        small = icosphere(40, 2)
+        write_stl(self.path("two.stl"), together(small, shifted(small, 30)))
+        self.write("cup.off", cup(small, 20))
+        self.path("in.ply").write_text(ply(soup(small), "property double height",
+                                           [(p[2],) for p in soup(small)[0]]))
+        self.mend("in.ply", "-o", "heights.vtp")
+        self.path("in.ply").unlink()
+        given = set(self.names())
+        examples = re.search(r"## Examples.*?```sh\n(.*?)```", README.read_text(), re.DOTALL)
+        done = subprocess.run(["bash", "-eu", "-o", "pipefail", "-c", examples.group(1)],
+                              cwd=self.folder, env={**os.environ, "PATH": f"{BIN}:/usr/bin:/bin"},
+                              capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (0, "the hole is wider\n"), done.stderr)
+        self.assertEqual(set(self.names()) - given, {"one.stl", "plan.json", "mended.vtp",
+                                                     "closed.off", "open.off"})
+
+
+if __name__ == "__main__":
+    main()
