@@ -31,7 +31,7 @@ class Docstrings(unittest.TestCase):
         tried = 0
         for name in ("adaptiso", *(f"adaptiso.{part}" for part in (
                 "_bem", "_images", "_labels", "_surface", "_mesh", "_quality", "_marching_cubes",
-                "_simplify", "giant", "vtk"))):
+                "_mend", "_simplify", "giant", "vtk"))):
             if name == "adaptiso.vtk" and importlib.util.find_spec("vtkmodules") is None:
                 continue
             module = importlib.import_module(name)
@@ -53,7 +53,8 @@ class Docstrings(unittest.TestCase):
                         self.assertTrue(inspect.getdoc(value), f"{name}.{member}")
 
     def test_every_parameter_is_documented(self):
-        for function in (adaptiso.surface, adaptiso.bem, adaptiso.labels, adaptiso.simplify, adaptiso.read, adaptiso.check, adaptiso.check_nested,
+        for function in (adaptiso.surface, adaptiso.bem, adaptiso.labels, adaptiso.simplify, adaptiso.mend,
+                         adaptiso.read, adaptiso.check, adaptiso.check_nested,
                          adaptiso.compare, adaptiso.marching_cubes, adaptiso.load,
                          *(getattr(adaptiso.giant, name) for name in adaptiso.giant.__all__
                            if name != "Plan")):

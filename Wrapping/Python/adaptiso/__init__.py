@@ -20,6 +20,7 @@ from ._bem import HeadModel, NoModel, bem
 from ._images import Image, read
 from ._labels import LabelSurfaces, Region, labels
 from ._marching_cubes import marching_cubes
+from ._mend import mend
 from ._mesh import Mesh, load
 from ._quality import Check, Comparison, check, check_nested, compare
 from ._simplify import simplify
@@ -27,7 +28,7 @@ from ._surface import Index, surface
 
 __all__ = ["Check", "Comparison", "Error", "HeadModel", "Image", "Index", "InternalError",
            "LabelSurfaces", "Mesh", "NoModel", "Region", "bem", "check", "check_nested", "compare",
-           "giant", "labels", "load", "marching_cubes", "read", "simplify", "surface", "__version__"]
+           "giant", "labels", "load", "marching_cubes", "mend", "read", "simplify", "surface", "__version__"]
 
 # who wants to see the warnings says so by logging's own means
 _logging.getLogger("adaptiso").addHandler(_logging.NullHandler())

@@ -36,6 +36,12 @@ class SimplifyOptions(TypedDict, total=False):
     keep_borders: Optional[bool]
 
 
+class MendOptions(TypedDict, total=False):
+    max_error: Optional[float]
+    max_hole: Optional[float]
+    open: Optional[bool]
+
+
 class LabelsOptions(TypedDict, total=False):
     max_error: Optional[float]
     triangles: Optional[int]

@@ -85,6 +85,7 @@ void declareSurfaces(py::module_& module);  ///< ArrayVolume, ArrayIndex, build_
 void declareReaders(py::module_& module);   ///< read_image
 void declareChecks(py::module_& module);    ///< check, check_nested, compare
 void declareSimplify(py::module_& module);  ///< simplify_mesh
+void declareMend(py::module_& module);      ///< mend_mesh
 void declareHeadModels(py::module_& module);  ///< HeadModelData, make_bem
 void declareLabels(py::module_& module);      ///< LabelData, make_labels
 

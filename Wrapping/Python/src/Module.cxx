@@ -36,6 +36,7 @@ PYBIND11_MODULE(_adaptiso, module) {
     declareReaders(module);
     declareChecks(module);
     declareSimplify(module);
+    declareMend(module);
     declareHeadModels(module);
     declareLabels(module);
     module.def("end_calls_of_other_threads", &endCallsOfOtherThreads);

@@ -6,6 +6,7 @@
 #include "Words.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Extraction/Mend.h"
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
@@ -44,6 +45,7 @@ std::string optionRows() {
          {"check_nested", without({"profile", "max-off"}, rules)},
          {"simplify",
           joined({describe(aimOptions(AimedSurface::Mesh)), describe(borderOptions())})},
+         {"mend", describe(mendOptions())},
          {"labels", describe(aimOptions(AimedSurface::Walls))},
          {"bem", joined({describe(boundaryOptions()), describe(sourceOptions()),
                          describe(elementOptions())})},

@@ -1,0 +1,77 @@
+"""Solids made of any mesh."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Optional
+
+from . import _adaptiso
+from ._arguments import Progress, progress as checked_progress, threads as checked_threads
+from ._mesh import Mesh, mesh_data_of, stated_frames
+from ._options import checked, takes
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._option_types import MendOptions
+
+
+@takes("mend")
+def mend(mesh: Any, faces: Any = None, *, input_coordinates: Optional[str] = None,
+         threads: int = 0, progress: Optional[Progress] = None,
+         **options: Unpack[MendOptions]) -> Mesh:
+    """Make a solid of any mesh: closed, 2-manifold, oriented, crossing itself nowhere.
+
+    Holes, crossings, doubled walls, inner shells, flipped parts and triangles that share no
+    vertices are mended around their places, within a proved distance. A sound mesh comes back as
+    it is. The same mesh and options give the same result, for any number of threads: that of the
+    program adaptiso-mend for a file with the same coordinates.
+
+    Parameters
+    ----------
+    mesh : Mesh, (vertices, faces), path, object with vertices and faces, or vertices
+        In any unit: `max_error` and `max_hole` are in the same. Vertices have the shape (n, 3).
+    faces : array_like of integers of shape (m, 3), optional
+        Where `mesh` holds vertices alone.
+    **options
+    input_coordinates : {"ras", "lps", "tkras", "voxel"}, optional
+        The frame of a file's points, overriding the file's own.
+    threads, progress
+        As for `surface`.
+
+    Returns
+    -------
+    Mesh
+        In the frame of `mesh`. ``report`` has ``was_sound``; what was found: ``border_edges``,
+        ``bad_edges``, ``bad_vertices``, ``crossing_triangles``, ``flipped_triangles``,
+        ``degenerate_triangles``, ``duplicate_triangles`` and ``merged_points``; ``kept_triangles``
+        and ``cut_triangles`` of `mesh`; lists of the places ``filled`` (holes closed),
+        ``left_open``, ``inner`` (dropped: inside the solid) and ``thin`` (dropped: too thin for the
+        bound), each with ``middle``, ``span`` and ``area``; and ``max_error``. No vertex or point
+        of the result is farther than ``result_to_input`` from `mesh`, but for those of ``filled``;
+        no point of `mesh` is farther than ``input_to_result`` from the result, but for ``inner``
+        and ``thin``. ``warnings`` are lines with a ``code``, as Documentation/Warnings.md lists
+        them.
+
+    Raises
+    ------
+    Error
+        A mesh without a triangle that has an area, with indices out of range or coordinates that
+        are not finite; one that encloses nothing, has a hole wider than `max_hole`, or can't be
+        mended within `max_error`; an option that can't be used.
+
+    Examples
+    --------
+    >>> import adaptiso, numpy as np
+    >>> i, j, k = np.indices((32, 32, 32))
+    >>> ball = -np.sqrt((i - 15.5) ** 2 + (j - 15.5) ** 2 + (k - 15.5) ** 2)
+    >>> whole = adaptiso.surface(ball, -12, method="mc")
+    >>> torn = (whole.vertices, whole.faces[1:])
+    >>> mended = adaptiso.mend(torn)
+    >>> mended.is_closed, mended.report["border_edges"], len(mended.report["filled"])
+    (True, 3, 1)
+    """
+    given = mesh if faces is None else (mesh, faces)
+    data = mesh_data_of(given, False, *stated_frames(input_coordinates, [given]))
+    made, found = _adaptiso.mend_mesh(
+        data, checked("mend", options), checked_threads(threads), checked_progress(progress))
+    return Mesh._of(made, found)
