@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "Common/Batch.h"
@@ -17,6 +19,7 @@
 #include "SelfTest.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/PortableMath.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
@@ -364,6 +367,33 @@ Verdict verdictOf(const CheckRun& run) {
     return {run.hasPassed() ? kExitOk : kExitCheckFailed};
 }
 
+/// Whether adaptiso-mend is for what failed, and takes the surface.
+bool isForMending(const SurfaceRun& surface) {
+    constexpr std::string_view kMended[] = {
+        "closed",  "manifoldEdges",         "manifoldVertices",     "consistentOrientation",
+        "outward", "noDegenerateTriangles", "noDuplicateTriangles", "noSelfIntersections"};
+    constexpr std::string_view kRefused[] = {"finiteCoordinates", "indicesInRange"};
+    const auto fails = [&](std::span<const std::string_view> keys) {
+        return std::ranges::any_of(surface.checks, [&](const Check& check) {
+            return check.breaksProfile() && std::ranges::count(keys, check.key) > 0;
+        });
+    };
+    return fails(kMended) && !fails(kRefused);
+}
+
+/// The command that mends the first surface with faults that can be mended; empty if none has.
+std::string mendingCommand(const CheckRun& run) {
+    const auto found = std::ranges::find_if(run.surfaces, isForMending);
+    if (found == run.surfaces.end()) return {};
+    const std::string name = found->file.filename().string();
+    const auto isWritten = [&](const MeshFormat& format) {
+        return std::ranges::count(format.extensions, found->file.extension().string()) > 0;
+    };
+    const bool keepsFormat = std::ranges::any_of(meshFormats(), isWritten);
+    return "adaptiso-mend " + shellQuoted(found->file.string()) + " -o " +
+           shellQuoted("mended-" + (keepsFormat ? name : name + ".vtp"));
+}
+
 /// A run for each of many surfaces, or of many heads. \return, \throws as runBatch()
 int runCheckBatch(const CheckOptions& options) {
     BatchProgram program{kProgram, "", {"--volume"}, {"--report", "--pictures"}};
@@ -404,6 +434,7 @@ int runCheck(const CheckOptions& options) {
     if (run.hasFailedCheck() && options.report.page.empty()) {
         run.next = "--report check.html shows where";
     }
+    addPart(run.next, mendingCommand(run), "; ");
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
     if (options.common.isQuiet || options.common.wantsJsonOnStdout()) printFailed(run);
     if (run.hasUnreadable()) run.verdict.error.clear();  // printed above

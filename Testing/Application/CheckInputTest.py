@@ -90,7 +90,8 @@ class Input(CheckTest):
         for line, pattern in zip(lines, ("cut.off: ", "missing.off: no such file", "what.xyz")):
             self.assertRegex(line, "^adaptiso-check: .*" + pattern)
         self.assertIn("cut.off: NOT READ\n", done.stdout)
-        self.assertIn("next: --report check.html shows where", done.stdout)  # of flipped.off
+        self.assertIn("next: --report check.html shows where; "
+                      "adaptiso-mend flipped.off -o mended-flipped.off\n", done.stdout)
         # of what was not read a page shows nothing
         self.assertNotIn("--report", self.run_check("cut.off", "missing.off").stdout)
         report = json.loads(self.path("report.json").read_text())
