@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
@@ -9,6 +10,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/MeshQuality/HausdorffInterval.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
@@ -143,6 +145,21 @@ TEST(Mend, JoinsASoup) {
     EXPECT_EQ(mended.mesh.points.size(), sphere.points.size());
     EXPECT_EQ(mended.statistics.cells, 0);
     EXPECT_GT(mended.statistics.mergedPoints, 0);
+}
+
+TEST(Mend, JoinsASoupWithGaps) {
+    const TriangleMesh sphere = bare(icosphere(3));
+    TriangleMesh soup = soupOf(sphere);
+    std::mt19937 random(1);
+    const auto step = [&] { return static_cast<double>(random() % 3) - 1; };
+    for (Vec3& p : soup.points) p += 1e-4 * Vec3{step(), step(), 0};
+    const Mended mended = mend(soup, within(0.01));
+    expectMended(mended);
+    EXPECT_EQ(mended.mesh.points.size(), sphere.points.size());
+    EXPECT_GT(mended.statistics.movedMm, 0);
+    EXPECT_LE(
+        hausdorffDistance(mended.mesh, soup).combined.upperMm,
+        1.002 * std::max(mended.statistics.resultToInputMm, mended.statistics.inputToResultMm));
 }
 
 TEST(Mend, PartsSpheresThatTouch) {

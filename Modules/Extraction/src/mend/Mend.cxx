@@ -211,9 +211,9 @@ Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
     const MendInput input = detail::prepareInput(mesh, statistics);
     const AabbTree tree(input.mesh);
     const detail::WindingField field(input.mesh, tree);
+    const double boundMm = statistics.maxErrorMm - statistics.movedMm;
     for (std::size_t attempt = 0; attempt < kShifts.size(); ++attempt) {
-        const MendLattice lattice(boundingBox(input.mesh), spacingFor(statistics.maxErrorMm),
-                                  kShifts[attempt]);
+        const MendLattice lattice(boundingBox(input.mesh), spacingFor(boundMm), kShifts[attempt]);
         MendRegion region(input, tree, field, lattice);
         region.addFaults();
         MendAssembly assembly;
@@ -233,10 +233,10 @@ Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
             result.mesh = mesh;
             return result;
         }
-        findBridges(input, lattice, statistics.maxErrorMm, assembly);
+        findBridges(input, lattice, boundMm, assembly);
         judgeHoles(assembly, options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * diagonal),
                    options.leavesHolesOpen, statistics);
-        detail::proveDistances(input, tree, field, region, lattice, assembly, statistics);
+        detail::proveDistances(input, tree, field, region, lattice, assembly, boundMm, statistics);
         if (std::max(statistics.resultToInputMm, statistics.inputToResultMm) >
             statistics.maxErrorMm) {
             continue;

@@ -146,8 +146,8 @@ void findBridges(const MendInput& input, const MendLattice& lattice, double boun
 
 void proveDistances(const MendInput& input, const AabbTree& tree, const WindingField& field,
                     const MendRegion& region, const MendLattice& lattice,
-                    const MendAssembly& assembly, MendStatistics& statistics) {
-    const double bound = statistics.maxErrorMm;
+                    const MendAssembly& assembly, double boundMm, MendStatistics& statistics) {
+    statistics.resultToInputMm = statistics.inputToResultMm = statistics.movedMm;
     TriangleMesh moved;  // of the result, what is not the input's
     moved.points = assembly.mesh.points;
     for (std::size_t t = 0; t < assembly.source.size(); ++t) {
@@ -158,8 +158,8 @@ void proveDistances(const MendInput& input, const AabbTree& tree, const WindingF
     if (!moved.triangles.empty()) {
         HausdorffOptions options;
         options.isSymmetric = false;
-        options.limitMm = bound;
-        statistics.resultToInputMm = hausdorffDistance(moved, input.mesh, options).aToB.upperMm;
+        options.limitMm = boundMm;
+        statistics.resultToInputMm += hausdorffDistance(moved, input.mesh, options).aToB.upperMm;
     }
     std::vector<LostPiece> pieces;
     for (std::size_t n = 0; n < assembly.inner.size(); ++n) {
@@ -177,9 +177,8 @@ void proveDistances(const MendInput& input, const AabbTree& tree, const WindingF
     std::vector<std::uint64_t> cells = assembly.cell;
     std::sort(cells.begin(), cells.end());
     for (const std::uint32_t t : touched) addInRegion(input, region, lattice, cells, t, pieces);
-    if (!touched.empty()) statistics.inputToResultMm = std::sqrt(3.0) * lattice.spacing();
-    if (pieces.empty()) return;
-    const NearnessProof proof(assembly.mesh, bound);
+    double upperMm = touched.empty() ? 0 : std::sqrt(3.0) * lattice.spacing();
+    const NearnessProof proof(assembly.mesh, boundMm);
     std::vector<NearnessProof::Result> proved(pieces.size());
     std::vector<std::uint8_t> isInner(pieces.size());
     parallelForPieces(std::ssize(pieces), 64, [&](std::int64_t begin, std::int64_t end) {
@@ -198,10 +197,11 @@ void proveDistances(const MendInput& input, const AabbTree& tree, const WindingF
     });
     std::vector<FarPiece> far;
     for (std::size_t n = 0; n < proved.size(); ++n) {
-        statistics.inputToResultMm = std::max(statistics.inputToResultMm, proved[n].upperMm);
+        upperMm = std::max(upperMm, proved[n].upperMm);
         if (proved[n].others.empty()) continue;
         far.push_back({pieces[n].triangle, isInner[n] != 0, std::move(proved[n].others)});
     }
+    statistics.inputToResultMm += upperMm;
     statistics.inner = placesOf(input, far, true);
     statistics.thin = placesOf(input, far, false);
 }

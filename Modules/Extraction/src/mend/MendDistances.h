@@ -17,10 +17,10 @@ std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> connectedPlaces(
 void findBridges(const MendInput& input, const MendLattice& lattice, double boundMm,
                  MendAssembly& assembly);
 
-/// Encloses both distances, and lists what of the input lies farther from the result than the bound
-/// (statistics.maxErrorMm).
+/// Encloses both distances, and lists what of the input lies farther from the result than the
+/// bound. Adds statistics.movedMm to both.
 void proveDistances(const MendInput& input, const AabbTree& tree, const WindingField& field,
                     const MendRegion& region, const MendLattice& lattice,
-                    const MendAssembly& assembly, MendStatistics& statistics);
+                    const MendAssembly& assembly, double boundMm, MendStatistics& statistics);
 
 }  // namespace adaptiso::detail

@@ -17,6 +17,9 @@
 namespace adaptiso::detail {
 namespace {
 
+/// Points may move by as much of the bound, to become one.
+constexpr double kNear = 0.05;
+
 /// How many triangles each edge has.
 std::vector<std::int64_t> edgeUses(const MendInput& input) {
     std::vector<std::int64_t> uses(input.edges.size());
@@ -58,30 +61,100 @@ std::vector<VertexId> placesOf(const std::vector<Vec3>& points) {
     return place;
 }
 
+std::vector<VertexId> borderPoints(const MendInput& input) {
+    const std::vector<std::int64_t> uses = edgeUses(input);
+    std::vector<VertexId> points;
+    for (std::size_t e = 0; e < uses.size(); ++e) {
+        if (uses[e] != 1) continue;
+        points.push_back(input.edges[e].a);
+        points.push_back(input.edges[e].b);
+    }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    return points;
+}
+
+/// Points become others; edges follow. \return how many do
+std::int64_t renumber(MendInput& input, const std::vector<VertexId>& becomes) {
+    std::int64_t merged = 0;
+    for (std::size_t v = 0; v < becomes.size(); ++v) {
+        if (becomes[v] != static_cast<VertexId>(v)) ++merged;
+    }
+    if (merged == 0) return 0;
+    for (Triangle& t : input.mesh.triangles) {
+        for (VertexId& v : t) v = becomes[v];
+    }
+    findEdges(input);
+    return merged;
+}
+
+std::vector<VertexId> themselves(std::size_t count) {
+    std::vector<VertexId> points(count);
+    std::iota(points.begin(), points.end(), VertexId{0});
+    return points;
+}
+
 /// Points of borders become the first one at their place.
 std::int64_t mergeBorderPoints(MendInput& input) {
-    const std::vector<std::int64_t> uses = edgeUses(input);
-    std::vector<std::uint8_t> isOnBorder(input.mesh.points.size());
-    for (std::size_t e = 0; e < uses.size(); ++e) {
-        if (uses[e] == 1) isOnBorder[input.edges[e].a] = isOnBorder[input.edges[e].b] = 1;
-    }
     const std::vector<VertexId> place = placesOf(input.mesh.points);
-    std::vector<VertexId> first(place.size(), -1), becomes(place.size());
-    std::int64_t merged = 0;
-    for (std::size_t v = 0; v < place.size(); ++v) {
-        becomes[v] = static_cast<VertexId>(v);
-        if (isOnBorder[v] == 0) continue;
+    std::vector<VertexId> first(place.size(), -1), becomes = themselves(place.size());
+    for (const VertexId v : borderPoints(input)) {
         VertexId& of = first[place[v]];
-        if (of < 0) of = static_cast<VertexId>(v);
-        if (of != static_cast<VertexId>(v)) ++merged;
+        if (of < 0) of = v;
         becomes[v] = of;
     }
-    if (merged > 0) {
-        for (Triangle& t : input.mesh.triangles) {
-            for (VertexId& v : t) v = becomes[v];
+    return renumber(input, becomes);
+}
+
+/// Points of borders that lie as near to each other become the first of them, but where a triangle
+/// has two of them, or they make a chain that reaches farther.
+/// \param movedMm  raised to how far a point moves
+std::int64_t mergeNearBorderPoints(MendInput& input, double reachMm, double& movedMm) {
+    const std::vector<VertexId> border = borderPoints(input);
+    const auto& points = input.mesh.points;
+    using Cell = std::array<std::int64_t, 3>;
+    const auto cellOf = [&](const Vec3& p) {
+        return Cell{static_cast<std::int64_t>(std::floor(p.x / reachMm)),
+                    static_cast<std::int64_t>(std::floor(p.y / reachMm)),
+                    static_cast<std::int64_t>(std::floor(p.z / reachMm))};
+    };
+    std::vector<std::pair<Cell, VertexId>> sorted;
+    for (const VertexId v : border) sorted.emplace_back(cellOf(points[v]), v);
+    std::sort(sorted.begin(), sorted.end());
+    DisjointSets sets(std::ssize(points));
+    for (const auto& [cell, v] : sorted) {
+        for (int n = 0; n < 9; ++n) {  // and the three cells along z in one go
+            const Cell low{cell[0] + n % 3 - 1, cell[1] + n / 3 - 1, cell[2] - 1};
+            for (auto at =
+                     std::lower_bound(sorted.begin(), sorted.end(), std::pair(low, VertexId{0}));
+                 at != sorted.end() && at->first[0] == low[0] && at->first[1] == low[1] &&
+                 at->first[2] <= cell[2] + 1;
+                 ++at) {
+                const VertexId other = at->second;
+                if (other >= v) continue;
+                if (squaredNorm(points[other] - points[v]) > reachMm * reachMm) continue;
+                sets.join(other, v);
+            }
         }
     }
-    return merged;
+    std::vector<std::uint8_t> isSpoilt(points.size());
+    for (const VertexId v : border) {
+        const std::int64_t set = sets.find(v);
+        if (squaredNorm(points[set] - points[v]) > reachMm * reachMm) isSpoilt[set] = 1;
+    }
+    for (const auto& [a, b, c] : input.mesh.triangles) {
+        const std::int64_t p = sets.find(a), q = sets.find(b), r = sets.find(c);
+        if (p == q || p == r) isSpoilt[p] = 1;
+        if (q == r) isSpoilt[q] = 1;
+    }
+    std::vector<VertexId> becomes = themselves(points.size());
+    for (const VertexId v : border) {
+        const std::int64_t set = sets.find(v);
+        if (isSpoilt[set] != 0) continue;
+        becomes[v] = set;
+        movedMm = std::max(movedMm, norm(points[set] - points[v]));
+    }
+    return renumber(input, becomes);
 }
 
 /// Triangles to drop of those at one place: all but one that faces as more of them do. Where as
@@ -135,6 +208,7 @@ std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
 void dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm, MendStatistics& statistics) {
     AreaTriangles area = withoutFlatTriangles(mesh, mayMoveMm);
     statistics.degenerateTriangles = area.flat;
+    statistics.movedMm = area.movedMm;
     std::vector<Triangle> kept;
     if (area.triangles.empty()) {
         kept.swap(mesh.triangles);
@@ -364,10 +438,11 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
     MendInput input;
     input.mesh.points = mesh.points;
     input.mesh.triangles = mesh.triangles;
-    dropFlatAndDoubled(input.mesh, 0.1 * statistics.maxErrorMm, statistics);
+    dropFlatAndDoubled(input.mesh, kNear * statistics.maxErrorMm, statistics);
     findEdges(input);
     statistics.mergedPoints = mergeBorderPoints(input);
-    if (statistics.mergedPoints > 0) findEdges(input);
+    statistics.mergedPoints +=
+        mergeNearBorderPoints(input, kNear * statistics.maxErrorMm, statistics.movedMm);
     const Buckets<std::uint32_t> atEdge = trianglesAtEdges(input);
     Sheets sheets = makeSheetsFaceOneWay(input, atEdge);
     turnSheetsOutward(input, sheets);

@@ -44,7 +44,7 @@ struct MendStatistics {
     // found in the input
     std::int64_t degenerateTriangles = 0;  ///< without area: dropped
     std::int64_t duplicateTriangles = 0;   ///< on the corners of another: dropped
-    std::int64_t mergedPoints = 0;         ///< of borders, at the place of another: merged
+    std::int64_t mergedPoints = 0;         ///< of borders, at or near the place of another: merged
     std::int64_t flippedTriangles = 0;     ///< faced the other way than their surface
     std::int64_t borderEdges = 0;          ///< in one triangle
     std::int64_t badEdges = 0;     ///< in three triangles or more, or between two of a Moebius band
@@ -61,7 +61,9 @@ struct MendStatistics {
     std::vector<MendedPlace> inner;     ///< of the input, within the solid: dropped, widest first
     std::vector<MendedPlace> thin;      ///< of the input, too thin to be kept: dropped
 
-    // proved
+    double movedMm = 0;  ///< no point was farther from the one it became
+
+    // proved, movedMm included
     double maxErrorMm = 0;  ///< that was asked for
     double resultToInputMm =
         0;  ///< no point of the result, `filled` aside, is farther from the input
