@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "adaptiso/Core/Buckets.h"
@@ -12,6 +13,58 @@
 
 namespace adaptiso::detail {
 namespace {
+
+/// How far points reach: along the 13 directions of a cube's edges and diagonals.
+class Reach {
+public:
+    void add(const Vec3& p) {
+        for (std::size_t n = 0; n < kDirections.size(); ++n) {
+            const double along = dot(kDirections[n], p);
+            low_[n] = std::min(low_[n], along);
+            high_[n] = std::max(high_[n], along);
+        }
+    }
+    void add(const Corners& c) {
+        for (const Vec3& p : c) add(p);
+        area_ += 0.5 * norm(areaVector2(c[0], c[1], c[2]));
+        ++triangles_;
+    }
+    MendedPlace place() const {
+        MendedPlace place;
+        place.areaMm2 = area_;
+        place.triangles = triangles_;
+        for (std::size_t n = 0; n < kDirections.size(); ++n) {
+            const double span = (high_[n] - low_[n]) / norm(kDirections[n]);
+            place.spanMm = std::max(place.spanMm, span);
+            if (n < 3) place.middleMm[static_cast<int>(n)] = 0.5 * (low_[n] + high_[n]);
+        }
+        return place;
+    }
+
+private:
+    static constexpr std::array<Vec3, 13> kDirections{{{1, 0, 0},
+                                                       {0, 1, 0},
+                                                       {0, 0, 1},
+                                                       {1, 1, 0},
+                                                       {1, -1, 0},
+                                                       {1, 0, 1},
+                                                       {1, 0, -1},
+                                                       {0, 1, 1},
+                                                       {0, 1, -1},
+                                                       {1, 1, 1},
+                                                       {1, 1, -1},
+                                                       {1, -1, 1},
+                                                       {-1, 1, 1}}};
+    static constexpr std::array<double, 13> filled(double value) {
+        std::array<double, 13> all{};
+        all.fill(value);
+        return all;
+    }
+    std::array<double, 13> low_ = filled(std::numeric_limits<double>::infinity()),
+                           high_ = filled(-std::numeric_limits<double>::infinity());
+    double area_ = 0;
+    std::int64_t triangles_ = 0;
+};
 
 /// A part of a triangle of the input that is not in the result.
 struct LostPiece {
@@ -65,11 +118,6 @@ struct FarPiece {
 /// Places of what hangs together by points of the input.
 std::vector<MendedPlace> placesOf(const MendInput& input, const std::vector<FarPiece>& pieces,
                                   bool areInner) {
-    struct Extent {
-        BoundingBox box = BoundingBox::empty();
-        double area = 0;
-        std::int64_t triangles = 0;
-    };
     DisjointSets sets(std::ssize(input.mesh.points));
     for (const FarPiece& piece : pieces) {
         const auto& [a, b, c] = input.mesh.triangles[piece.triangle];
@@ -77,21 +125,14 @@ std::vector<MendedPlace> placesOf(const MendInput& input, const std::vector<FarP
         sets.join(a, b);
         sets.join(a, c);
     }
-    std::map<std::int64_t, Extent> extents;
+    std::map<std::int64_t, Reach> reaches;
     for (const FarPiece& piece : pieces) {
         if (piece.isInner != areInner) continue;
-        Extent& extent = extents[sets.find(input.mesh.triangles[piece.triangle][0])];
-        for (const Corners& c : piece.parts) {
-            extent.box.add(boxOf(c));
-            extent.area += 0.5 * norm(areaVector2(c[0], c[1], c[2]));
-            ++extent.triangles;
-        }
+        Reach& reach = reaches[sets.find(input.mesh.triangles[piece.triangle][0])];
+        for (const Corners& c : piece.parts) reach.add(c);
     }
     std::vector<MendedPlace> places;
-    for (const auto& [set, extent] : extents) {
-        places.push_back(
-            {extent.box.middle(), norm(extent.box.size()), extent.area, extent.triangles});
-    }
+    for (const auto& [set, reach] : reaches) places.push_back(reach.place());
     std::stable_sort(places.begin(), places.end(), [](const MendedPlace& a, const MendedPlace& b) {
         return a.spanMm > b.spanMm;
     });
@@ -114,17 +155,9 @@ std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> connectedPlaces(
     }
     std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> places;
     for (auto& [set, triangles] : bySet) {
-        BoundingBox box = BoundingBox::empty();
-        MendedPlace place;
-        for (const std::int64_t t : triangles) {
-            const Corners c = cornersOf(mesh, t);
-            box.add(boxOf(c));
-            place.areaMm2 += 0.5 * norm(areaVector2(c[0], c[1], c[2]));
-        }
-        place.middleMm = box.middle();
-        place.spanMm = norm(box.size());
-        place.triangles = std::ssize(triangles);
-        places.emplace_back(place, std::move(triangles));
+        Reach reach;
+        for (const std::int64_t t : triangles) reach.add(cornersOf(mesh, t));
+        places.emplace_back(reach.place(), std::move(triangles));
     }
     std::stable_sort(places.begin(), places.end(),
                      [](const auto& a, const auto& b) { return a.first.spanMm > b.first.spanMm; });

@@ -16,8 +16,8 @@ struct MendOptions {
     /// lists. Empty: kPartOfDiagonal of the diagonal of the mesh's box. \pre at least
     /// kLeastOfDiagonal of it
     std::optional<double> maxErrorMm;
-    /// Widest hole to close: the diagonal of the box around what closes it. Empty: kHoleOfDiagonal
-    /// of the mesh's diagonal. \pre >= 0
+    /// Widest hole to close, as MendedPlace::spanMm. Empty: kHoleOfDiagonal of the mesh's diagonal.
+    /// \pre >= 0
     std::optional<double> maxHoleMm;
     bool leavesHolesOpen = false;  ///< wider holes stay open; otherwise they are refused
     ProgressCallback progress;     ///< called as the work goes on; may be empty
@@ -32,7 +32,7 @@ const Options<MendOptions>& mendOptions();
 /// A stretch of surface that the bound does not hold for.
 struct MendedPlace {
     Vec3 middleMm;      ///< of its box
-    double spanMm = 0;  ///< diagonal of its box
+    double spanMm = 0;  ///< largest extent along the edges and diagonals of a cube
     double areaMm2 = 0;
     std::int64_t triangles = 0;  ///< pieces of triangles that make it up
 };
