@@ -59,6 +59,17 @@ export interface SimplifyOptions extends RunOptions { maxErrorMm?: number; trian
 /** adaptiso-simplify: fewer triangles within a stated distance. */
 export function simplify(surface: MeshInput, options?: SimplifyOptions): Promise<MeshResult>;
 
+export interface MendOptions extends RunOptions {
+  /** The distance that no point may exceed, but for what the report lists; default .2 % of the diagonal. */
+  maxErrorMm?: number;
+  /** Holes up to this wide are closed; default 5 % of the diagonal. */
+  maxHoleMm?: number;
+  /** Leave wider holes open; otherwise they are refused. */
+  open?: boolean;
+}
+/** adaptiso-mend: a sound solid of any mesh. */
+export function mend(surface: MeshInput, options?: MendOptions): Promise<MeshResult>;
+
 /** adaptiso-check: soundness of surfaces. Faults are no exception: `exitCode` is 1 and `report` names them. */
 export function check(surfaces: MeshInput | MeshInput[], options?: RunOptions): Promise<RunResult>;
 
@@ -74,6 +85,6 @@ export interface BemOptions extends RunOptions { mask?: ImageInput; vertices?: n
 export function bem(t1: ImageInput, options?: BemOptions): Promise<RunResult>;
 
 /** Any of the programs with its own arguments, on files in memory, each at a relative path of its own. */
-export function run(program: "mesh" | "simplify" | "check" | "compare" | "labels" | "bem", args: string[],
+export function run(program: "mesh" | "simplify" | "mend" | "check" | "compare" | "labels" | "bem", args: string[],
   files: NamedFile[], options?: Omit<RunOptions, "args"> & { folders?: string[] }): Promise<{ exitCode: number; stdout: string;
   stderr: string; files: NamedFile[]; memoryBytes: number }>;

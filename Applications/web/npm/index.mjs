@@ -252,6 +252,11 @@ export async function simplify(surface, options = {}) {
   return makeSurface("simplify", [], await meshFile(surface), options);
 }
 
+export async function mend(surface, { maxHoleMm, open = false, ...options } = {}) {
+  return makeSurface("mend", [...(maxHoleMm === undefined ? [] : ["--max-hole", String(maxHoleMm)]), ...(open ? ["--open"] : [])],
+    await meshFile(surface), options);
+}
+
 export async function check(surfaces, options = {}) {
   const all = Array.isArray(surfaces) ? surfaces : [surfaces];
   const files = apart(await Promise.all(all.map((one, n) => meshFile(one, `surface-${n + 1}.ply`))));

@@ -9,7 +9,7 @@ import { fileURLToPath, pathToFileURL } from "node:url";
 
 const kTop = join(dirname(fileURLToPath(import.meta.url)), "../../../..");
 const kPackage = join(process.env.ADAPTISO_WEB ?? join(kTop, "build/web"), "npm/adaptiso");
-const { AdaptisoError, bem, check, compare, labels, mesh, run, simplify } = await import(pathToFileURL(join(kPackage, "index.mjs")));
+const { AdaptisoError, bem, check, compare, labels, mend, mesh, run, simplify } = await import(pathToFileURL(join(kPackage, "index.mjs")));
 
 /** An image of `n` voxels of `step` mm along each axis about (0, 0, 0). */
 function image(n, step, sampleAt, Type = Int16Array) {
@@ -152,6 +152,17 @@ describe("simplify", () => {
     const points = new Float64Array(12);
     for (const wrong of [{ points, triangles: new Float64Array([0, 2.7, 1]) }, { points, triangles: new BigUint64Array(3) },
       { points: new BigInt64Array(12), triangles: new Uint32Array(3) }]) await refused(check(wrong), 3, /^mesh\.points and/);
+  });
+});
+
+describe("mend", () => {
+  it("closes a hole, and leaves it open where asked", async () => {
+    const closed = await ballMesh(12), open = { ...closed, triangles: closed.triangles.slice(3) };
+    const mended = await mend(open, { maxErrorMm: 0.3 });
+    assert.equal(mended.report.output.closed, true);
+    near(volume(mended.mesh), volume(closed), 0.1);
+    await refused(mend(open, { maxErrorMm: 0.01, maxHoleMm: 0.1 }), 1, /^adaptiso-mend: .*--max-hole/);
+    assert.equal((await mend(open, { maxErrorMm: 0.01, maxHoleMm: 0.1, open: true })).report.output.closed, false);
   });
 });
 

@@ -7,7 +7,7 @@ import { LabelsTab } from "./labels";
 import { MeshTab } from "./mesh";
 import { unpackBytes, unpackText } from "./packed";
 import { Scan } from "./scan";
-import { CheckTab, CompareTab, SimplifyTab } from "./surfaces";
+import { CheckTab, CompareTab, MendTab, SimplifyTab } from "./surfaces";
 import { kVersion, type Page } from "./task";
 import { View } from "./view";
 
@@ -66,6 +66,7 @@ function start(): void {
   new HeadTab(page, scan);
   new LabelsTab(page, scan);
   new CheckTab(page);
+  new MendTab(page);
   new SimplifyTab(page);
   new CompareTab(page);
   listenToTabs();

@@ -1,4 +1,4 @@
-/** The tabs Check, Simplify and Compare: of meshes that are there. */
+/** The tabs Check, Mend, Simplify and Compare: of meshes that are there. */
 import { byId, formatCount, make, showGiven } from "./dom";
 import { stemOf, takeFiles } from "./drop";
 import { type Looker, Refused } from "./engine";
@@ -142,6 +142,39 @@ export class CheckTab {
     await task.show(title, run, done, [], details);
     const file = done.files.find((each) => each.path === kReport);
     if (file !== undefined) task.addSave("Save the report (JSON)", "check.json", () => file.bytes, true);
+  }
+}
+
+interface Place { spanMm: number }
+
+export class MendTab {
+  private readonly meshes: Meshes;
+  constructor(page: Page) { this.meshes = new Meshes("mend", page, 1, () => this.make()); }
+
+  private async make(): Promise<void> {
+    const { task, files } = this.meshes;
+    if (files.length === 0) return task.refuse("Give a mesh first.");
+    const [file] = files, output = `${stemOf(file.path)}-mended${byId<HTMLSelectElement>("mend-format").value}`;
+    const args = [file.path];
+    for (const [option, id] of [["--max-error", "mend-error"], ["--max-hole", "mend-hole"]]) {
+      if (byId<HTMLInputElement>(id).value !== "") args.push(option, number(id));
+    }
+    args.push("-o", output, "--json", kReport);
+    const run: Run = { program: "adaptiso-mend", args, files, memoryBytes: this.meshes.memoryBytes }, done = await task.run(run);
+    if (done === undefined || done.exitCode !== 0) return;
+    const report = reportOf(done) as { found: { sound: boolean }; output: { triangles: number; keptTriangles: number; resultToInputMm: number;
+      inputToResultMm: number; filled: Place[]; inner: Place[]; thin: Place[] } };
+    const made = report.output, [result] = outputsOf(done);
+    const count = (places: Place[], one: string, many: string): string[] => (places.length === 0 ? [] : [`${places.length} ${places.length === 1 ? one : many}`]);
+    const changes = [...count(made.filled, "hole closed", "holes closed"), ...count(made.inner, "inner part dropped", "inner parts dropped"),
+      ...count(made.thin, "thin part dropped", "thin parts dropped")];
+    const most = Math.max(made.resultToInputMm, made.inputToResultMm);
+    await task.show(report.found.sound ? `${file.path} is sound: it stays as it is`
+      : `A sound solid of ${formatCount(made.triangles)} triangles, ${formatCount(made.keptTriangles)} of them as they were`
+        + `${changes.length === 0 ? "" : `; ${changes.join(", ")}`}; no other point farther than ${Number(most.toPrecision(3))} mm from ${file.path} (proved)`,
+    run, done, [result]);
+    task.addSave(`Save ${result.path}`, result.path, () => result.bytes, true);
+    task.addGlb(`${stemOf(result.path)}.glb`, await this.meshes.show([{ path: result.path, data: result.bytes }]));
   }
 }
 

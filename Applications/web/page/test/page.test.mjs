@@ -115,7 +115,7 @@ for (const browserName of kBrowsers) {
     it("offers the programs' formats and presets", async () => {
       const offeredBy = (program, option) => new RegExp(`\\n  --${option} (\\S+)`).exec(native(folder, program, "--help").stdout)[1].split("|");
       const formats = offeredBy("adaptiso-labels", "format").map((word) => `.${word}`);
-      for (const form of ["#format", "#simplify-format", "#labels-format"]) assert.deepEqual(await choicesOf(page, form), formats, form);
+      for (const form of ["#format", "#mend-format", "#simplify-format", "#labels-format"]) assert.deepEqual(await choicesOf(page, form), formats, form);
       assert.deepEqual(await choicesOf(page, "#preset"), ["", ...offeredBy("adaptiso-bem", "preset")]);
     });
 
@@ -480,12 +480,24 @@ for (const browserName of kBrowsers) {
       await picture(page, `${browserName}-compare`);
     });
 
+    it("mends a mesh as the program does", async () => {
+      await press(page, "#tab-mend");
+      await give(page, "#mend-files", join(folder, "crossing.obj"));
+      await page.$eval("#mend-error", (input) => { input.value = "0.5"; });
+      await press(page, "#mend .go");
+      assert.equal(await ended(page, "mend"), "");
+      assert.match(await textOf(page, "#mend .result"), /A sound solid of .* inner parts? dropped/);
+      const bytes = await saved(page, open.downloads, "#mend .saves .main", "crossing-mended.stl");
+      assert.equal(native(folder, ...(await textOf(page, "#mend .copy:nth-of-type(2) code")).split(" ")).status, 0);
+      assert.deepEqual(bytes, readFileSync(join(folder, "crossing-mended.stl")));
+    });
+
     it("gives axe nothing to find in any tab, wide or narrow, light or dark", async () => {
       await page.evaluate(axe);
       for (const [width, scheme] of [[1280, "light"], [390, "dark"]]) {
         await page.setViewport({ width, height: 844 });
         if (browserName === "chrome") await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
-        for (const tab of ["mesh", "head", "labels", "check", "simplify", "compare"]) {
+        for (const tab of ["mesh", "head", "labels", "check", "mend", "simplify", "compare"]) {
           await press(page, `#tab-${tab}`);
           const found = await page.evaluate(async () => (await globalThis.axe.run()).violations
             .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target.join(" ")).join(", ")}`));

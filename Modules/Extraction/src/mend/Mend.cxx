@@ -56,7 +56,9 @@ double checkedBound(const MendOptions& options, double diagonal) {
 
 /// The largest power of 2 of which a cell's diagonal is within the bound.
 double spacingFor(double boundMm) {
-    return std::exp2(std::floor(std::log2(boundMm / std::sqrt(3.0))));
+    int exponent = 0;
+    std::frexp(boundMm / std::sqrt(3.0), &exponent);
+    return std::ldexp(1, exponent - 1);
 }
 
 std::vector<TriangleView::Triangle> inShort(const TriangleMesh& mesh) {

@@ -6,12 +6,31 @@
 
 namespace adaptiso::detail {
 
+namespace {
+
+/// The angle of (x, y), radians, to some 1e-14, by arithmetic that every processor rounds alike.
+double angleOf(double y, double x) {
+    const double ax = std::abs(x), ay = std::abs(y);
+    if (ax == 0 && ay == 0) return 0;
+    double t = ay <= ax ? ay / ax : ax / ay;
+    for (int n = 0; n < 2; ++n) t /= 1 + std::sqrt(1 + t * t);  // halves the angle, to pi / 16
+    const double square = t * t;
+    double series = 1.0 / 17;
+    for (int n = 15; n > 0; n -= 2) series = 1.0 / n - square * series;
+    double angle = 4 * t * series;
+    if (ay > ax) angle = std::numbers::pi / 2 - angle;
+    if (x < 0) angle = std::numbers::pi - angle;
+    return y < 0 ? -angle : angle;
+}
+
+}  // namespace
+
 double solidAnglePart(const Corners& triangle, const Vec3& p) {
     const Vec3 a = triangle[0] - p, b = triangle[1] - p, c = triangle[2] - p;
     const double la = norm(a), lb = norm(b), lc = norm(c);
     const double y = dot(a, cross(b, c)),
                  x = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    return std::atan2(y, x) / (2 * std::numbers::pi);
+    return angleOf(y, x) / (2 * std::numbers::pi);
 }
 
 WindingField::WindingField(const TriangleMesh& mesh, const AabbTree& tree)
