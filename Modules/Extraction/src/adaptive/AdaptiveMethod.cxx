@@ -159,13 +159,14 @@ private:
         const std::ptrdiff_t points = std::ssize(surface.points);
         std::optional<SurfaceChanges> changes;
         while (!changes && !surface.heirs.empty() && reachMm <= 4 * full_.largestExtentMm()) {
-            changes = LocalUndo(full_.fineOf(surface), surface).around(mended_, places, reachMm);
+            LocalUndo undo(full_.fineOf(surface), surface);
+            changes = undo.around(mended_, places, reachMm, mayUndo_);
+            if (undo.isTooMuch()) return false;
             reachMm *= 2;
         }
         if (!changes) return false;
         work_.verticesUndone += std::ssize(surface.points) - points;
         mayUndo_ -= std::ssize(surface.points) - points;
-        if (mayUndo_ < 0) return false;
         attempt.error = attempt.proof.proveAgain(surface, *changes);
         return true;
     }
@@ -174,7 +175,7 @@ private:
     /// with it, where a run that keeps nearer has none.
     std::int64_t mostUndone(const SimplifiedSurface& surface) const {
         if (work_.runs == kMostRuns || !isBoundLarge()) {
-            return std::numeric_limits<std::int64_t>::max();
+            return LocalUndo::kAny;
         }
         return static_cast<std::int64_t>(kMostUndone * static_cast<double>(surface.points.size()));
     }

@@ -138,6 +138,23 @@ private:
     std::size_t finePoints_;
 };
 
+TEST(LocalUndo, EndsWhereMoreVerticesWouldReturnThanMay) {
+    CoarseSphere sphere, whole;
+    const Vec3 place{0, 0, kRadius};
+    const std::size_t before = whole.surface.points.size();
+    ASSERT_TRUE(whole.undoAround(place, 2));
+    const auto gain = static_cast<std::int64_t>(whole.surface.points.size() - before);
+    ASSERT_GT(gain, 0);
+
+    detail::LocalUndo undo = sphere.undo();
+    EXPECT_FALSE(undo.around({}, {{place, place}}, 2, gain - 1));
+    EXPECT_TRUE(undo.isTooMuch());
+    EXPECT_EQ(sphere.surface.points.size(), before);  // nothing is changed
+    detail::LocalUndo again = sphere.undo();
+    EXPECT_TRUE(again.around({}, {{place, place}}, 2, gain));
+    EXPECT_FALSE(again.isTooMuch());
+}
+
 TEST(LocalUndo, GoesFartherAroundPiecesThatStayInsideOut) {
     // the speck's own corners were merged with none: to take these apart changes nothing
     const BallBesideSpeck full;

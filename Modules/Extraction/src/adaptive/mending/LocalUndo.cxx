@@ -52,7 +52,7 @@ Index3 cubeOf(const Vec3& p, double side) {
 
 std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& mended,
                                                 const std::vector<PlaceBeyond>& places,
-                                                double reachMm) {
+                                                double reachMm, std::int64_t most) {
     DisjointSets sets(std::ssize(surface_.points));
     const auto number = [](Number v) { return static_cast<std::int64_t>(v); };
     for (const Triangle& t : mended) {
@@ -65,6 +65,8 @@ std::optional<SurfaceChanges> LocalUndo::around(const std::vector<Triangle>& men
         for (const Number v : more) isChosen[sets.find(number(v))] = true;
         choose(isChosen, sets);
         if (!hasMerges()) return {};
+        isTooMuch_ = std::ssize(apart_) > most;
+        if (isTooMuch_) return {};
         makeTriangles();
         more = faults();
         if (more.empty()) return apply();

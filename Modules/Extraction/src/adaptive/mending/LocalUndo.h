@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,8 @@ namespace adaptiso::detail {
 /// with the same borders.
 class LocalUndo {
 public:
+    static constexpr std::int64_t kAny = std::numeric_limits<std::int64_t>::max();
+
     /// \pre the surface keeps heirs of the full one, and samples of its vertices
     LocalUndo(const TriangleView& fine, SimplifiedSurface& surface)
         : fine_(fine), surface_(surface) {}
@@ -30,10 +33,15 @@ public:
     ///                 apart together
     /// \param reachMm  how far around the places vertices come apart; at least the corners of their
     ///                 triangles
-    /// \return what it changed; nothing when no vertex would come apart, or the surface would not
-    ///         stay a manifold
+    /// \param most     vertices that the surface may gain
+    /// \return what it changed; nothing when no vertex would come apart, the surface would not
+    ///         stay a manifold, or isTooMuch()
     std::optional<SurfaceChanges> around(const std::vector<SurfaceState::Triangle>& mended,
-                                         const std::vector<PlaceBeyond>& places, double reachMm);
+                                         const std::vector<PlaceBeyond>& places, double reachMm,
+                                         std::int64_t most = kAny);
+
+    /// The surface would gain too many vertices, and so would it from farther around.
+    bool isTooMuch() const { return isTooMuch_; }
 
 private:
     using Triangle = SurfaceState::Triangle;
@@ -72,6 +80,7 @@ private:
     Numbers apart_;
     Numbers numbers_;              ///< of each vertex of the full surface, in what is made
     std::vector<Triangle> fresh_;  ///< triangles to add
+    bool isTooMuch_ = false;
 };
 
 }  // namespace adaptiso::detail
