@@ -141,8 +141,6 @@ def mesh(pools, options, pick):
         attempt("simplify", adaptiso.simplify, made, max_error=pick([None, 0.5, 0, -1.0, "a"]),
                 triangles=pick([None, 20, 0, -3, 1e30]), reduction=pick([None, 0.5, 2]),
                 keep_borders=pick([False, True, None]), threads=1)
-        attempt("mend", adaptiso.mend, made, max_error=pick([None, 1, 0, -1.0, "a"]),
-                max_hole=pick([None, 3, 0, -1.0]), open=pick([False, True, None]), threads=1)
     found = attempt("check", adaptiso.check, (vertices, faces), threads=1)
     if found is not None:
         repr(found), found.failed, found.findings
