@@ -272,7 +272,8 @@ TEST(Counts, OfVtkCellDataAreThoseOfItsCells) {
     for (const std::string& good : {four + scalars(4), four + field(4, 4)}) {
         const MeshFile file = decoded(good, "a.vtk");
         EXPECT_EQ(codesOf(file), Codes{"lines-left-out"});
-        EXPECT_EQ(file.warnings[0].text, "3 lines or points beside the polygons of the surface were left out");
+        EXPECT_EQ(file.warnings[0].text,
+                  "3 lines or points beside the polygons of the surface were left out");
     }
     const auto refused = [](const std::string& vtk, std::string_view words) {
         EXPECT_NE(fault(vtk, "a.vtk").find(words), std::string::npos) << fault(vtk, "a.vtk");
