@@ -59,6 +59,9 @@ std::string inWordsOfOptions(std::string text) {
         const std::size_t at = text.find(ours);
         if (at != std::string::npos) text.replace(at, ours.size(), theirs);
     }
+    if (text.find("--max-hole") != std::string::npos) {
+        text += "; a larger --max-hole closes it, --open leaves it open";
+    }
     return text;
 }
 

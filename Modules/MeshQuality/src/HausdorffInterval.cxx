@@ -120,8 +120,10 @@ private:
     /// \param far  counts too
     FarPoint farthestVertex(const std::optional<Vec3>& far) const {
         const Corner& corner = *std::max_element(
-            vertices_.begin(), vertices_.end(),
-            [](const Corner& l, const Corner& r) { return l.squared < r.squared; });
+            vertices_.begin(), vertices_.end(), [](const Corner& l, const Corner& r) {
+                const bool isUsed = r.triangle >= 0;  // others have none
+                return (l.triangle >= 0) == isUsed ? l.squared < r.squared : isUsed;
+            });
         std::int64_t effort = 0;
         FarPoint farthest = to_.farPoint(corner.point, corner.triangle, effort);
         if (!far) return farthest;

@@ -1,6 +1,7 @@
 // CGAL (GPL) beside this library: this program alone of the benchmarks links it.
 //
 //   peerCgal envelope MESH BOUND -o OUT   edge collapse, as far as an envelope of BOUND mm allows
+//   peerCgal wrap MESH ALPHA OFFSET -o OUT   Alpha Wrap, of any triangles
 //   peerCgal distance A B [--error MM]    the Hausdorff distance, each way
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/distance.h>
@@ -9,9 +10,11 @@
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Polyhedral_envelope_filter.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
+#include <CGAL/alpha_wrap_3.h>
 #include <CGAL/version.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdint>
 #include <ctime>
 #include <iostream>
@@ -77,6 +80,19 @@ double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+/// Writes a result in the frame of the file that it was made of.
+Json write(CgalMesh& cgal, const MeshFile& of, const std::string& output, double seconds) {
+    const TriangleMesh result = fromCgal(cgal);
+    MeshWriteOptions options;
+    options.frame = of.frame.value_or(CoordinateFrame::Ras);
+    options.isInFrame = true;
+    options.saysFrame = of.frame.has_value();
+    writeMesh(result, output, options);
+    return {{"version", CGAL_VERSION_STR},
+            {"cpuSeconds", seconds},
+            {"triangles", result.triangles.size()}};
+}
+
 Json envelope(const std::string& input, double boundMm, const std::string& output) {
     namespace sms = CGAL::Surface_mesh_simplification;
     const MeshFile file = readMesh(input);
@@ -88,15 +104,22 @@ Json envelope(const std::string& input, double boundMm, const std::string& outpu
     sms::edge_collapse(cgal, sms::Count_stop_predicate<CgalMesh>(0),
                        CGAL::parameters::filter(filter));
     const double seconds = cpuSeconds() - begin;
-    const TriangleMesh result = fromCgal(cgal);
-    MeshWriteOptions write;
-    write.frame = file.frame.value_or(CoordinateFrame::Ras);
-    write.isInFrame = true;
-    write.saysFrame = file.frame.has_value();
-    writeMesh(result, output, write);
-    return {{"version", CGAL_VERSION_STR},
-            {"cpuSeconds", seconds},
-            {"triangles", result.triangles.size()}};
+    return write(cgal, file, output, seconds);
+}
+
+Json wrap(const std::string& input, double alphaMm, double offsetMm, const std::string& output) {
+    const MeshFile file = readMesh(input);
+    std::vector<Kernel::Point_3> points;
+    for (const Vec3& p : file.mesh.points) points.emplace_back(p.x, p.y, p.z);
+    std::vector<std::array<std::size_t, 3>> triangles;
+    for (const auto& [a, b, c] : file.mesh.triangles) {
+        triangles.push_back({static_cast<std::size_t>(a), static_cast<std::size_t>(b),
+                             static_cast<std::size_t>(c)});
+    }
+    CgalMesh cgal;
+    const double begin = cpuSeconds();
+    CGAL::alpha_wrap_3(points, triangles, alphaMm, offsetMm, cgal);
+    return write(cgal, file, output, cpuSeconds() - begin);
 }
 
 Json distance(const std::string& a, const std::string& b, double errorMm) {
@@ -119,21 +142,28 @@ Json distance(const std::string& a, const std::string& b, double errorMm) {
 
 int main(int argc, char** argv) {
     using namespace adaptiso::benchmarks;
-    CLI::App app("CGAL's edge collapse in an envelope, and its Hausdorff distance", "peerCgal");
+    CLI::App app("CGAL's edge collapse in an envelope, its Alpha Wrap and Hausdorff distance",
+                 "peerCgal");
     std::string first, second, output;
-    double boundMm = 0, errorMm = 1e-4;
+    double boundMm = 0, errorMm = 1e-4, alphaMm = 0, offsetMm = 0;
     CLI::App* collapse = app.add_subcommand("envelope", "Collapse edges within a distance");
     collapse->add_option("mesh", first, "A closed 2-manifold")->required();
     collapse->add_option("bound", boundMm, "mm")->required();
     collapse->add_option("-o,--output", output, "The result, in the mesh's frame")->required();
+    CLI::App* wrapped = app.add_subcommand("wrap", "Alpha Wrap of any triangles");
+    wrapped->add_option("mesh", first)->required();
+    wrapped->add_option("alpha", alphaMm, "mm")->required();
+    wrapped->add_option("offset", offsetMm, "mm")->required();
+    wrapped->add_option("-o,--output", output, "The result, in the mesh's frame")->required();
     CLI::App* measure = app.add_subcommand("distance", "Hausdorff distance, each way, mm");
     measure->add_option("a", first)->required();
     measure->add_option("b", second)->required();
     measure->add_option("--error", errorMm, "mm (default 1e-4)");
     app.require_subcommand(1);
     return runBenchmark(app, argc, argv, [&] {
-        const Json report = collapse->parsed() ? envelope(first, boundMm, output)
-                                               : distance(first, second, errorMm);
+        const Json report = collapse->parsed()  ? envelope(first, boundMm, output)
+                            : wrapped->parsed() ? wrap(first, alphaMm, offsetMm, output)
+                                                : distance(first, second, errorMm);
         std::cout << report.dump() << '\n';
     });
 }

@@ -10,6 +10,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/MeshQuality/HausdorffInterval.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -95,11 +96,13 @@ TEST(Mend, ClosesAHoleOfOneTriangle) {
     MendOptions options;
     options.maxHoleMm = 0.25;
     const Mended mended = mend(withHole(sphere), options);
+    EXPECT_EQ(mended.mesh.triangles.size(), 1280u);
+    EXPECT_EQ(mended.statistics.cells, 0);
     expectMended(mended);
     EXPECT_EQ(mended.statistics.borderEdges, 3);
     EXPECT_EQ(mended.statistics.filled.size(), 1u);
     EXPECT_NEAR(enclosedVolume(mended.mesh), enclosedVolume(sphere), 1e-3);
-    EXPECT_GT(mended.statistics.keptTriangles, 1250);
+    EXPECT_EQ(mended.statistics.keptTriangles, 1279);
 }
 
 TEST(Mend, UnitesSpheresThatCross) {
@@ -186,6 +189,21 @@ TEST(Mend, UnitesSolidsThatShareAWall) {
     EXPECT_EQ(mended.mesh.triangles.size(), 20u);  // two squares less
     EXPECT_EQ(mended.statistics.cells, 0);
     EXPECT_DOUBLE_EQ(enclosedVolume(mended.mesh), 2);
+    EXPECT_NEAR(areaOf(mended.statistics.inner), 1, 0.02);  // the wall between
+}
+
+/// What a bound dissolves is listed, not only what lies in new cells.
+TEST(Mend, ListsAPlateThatIsTooThin) {
+    TriangleMesh plate = cubeMesh({20, 0, 0}, {30, 10, 0.05});
+    plate.triangles.pop_back();
+    plate.points[plate.triangles[0][0]].z += 0.03;  // no plane closes it
+    plate.triangles.push_back({0, 1, 7});           // crosses the plate
+    const TriangleMesh scene = merged({cubeMesh({0, 0, 0}, {10, 10, 10}), plate});
+    MendOptions options = within(0.2);
+    options.maxHoleMm = 100;
+    const Mended mended = mend(scene, options);
+    expectMended(mended);
+    expectBounds(scene, mended);
 }
 
 TEST(Mend, KeepsOneOfASolidGivenTwice) {
@@ -223,8 +241,33 @@ TEST(Mend, RefusesWideHolesOrLeavesThemOpen) {
     options.leavesHolesOpen = true;
     const Mended open = mend(bowl, options);
     EXPECT_EQ(open.statistics.leftOpen.size(), 1u);
+    EXPECT_EQ(open.mesh.triangles, withoutUnusedPoints(bowl).triangles);  // the border stays
     const TopologyReport topology = checkTopology(open.mesh);
     EXPECT_TRUE(topology.isManifold() && topology.isOriented() && !topology.isClosed());
+}
+
+TEST(Mend, LeavesRaggedHolesOpenAsManifold) {
+    for (unsigned seed = 0; seed < 4; ++seed) {
+        TriangleMesh sieve = bare(icosphere(4));
+        std::mt19937 random(seed);
+        std::erase_if(sieve.triangles, [&](const Triangle&) { return random() % 3 == 0; });
+        MendOptions options = within(0.05);
+        options.maxHoleMm = 0.05;
+        options.leavesHolesOpen = true;
+        const TopologyReport topology = checkTopology(mend(sieve, options).mesh);
+        EXPECT_TRUE(topology.isManifold() && topology.isOriented()) << "seed " << seed;
+    }
+}
+
+TEST(Mend, RefusesCoordinatesWithoutDigits) {
+    EXPECT_THROW(mend(translated(withHole(bare(icosphere(2))), {1e15, 0, 0})), InvalidInput);
+    TriangleMesh huge = withHole(bare(icosphere(2, {}, 1e110)));
+    EXPECT_THROW(mend(huge), InvalidInput);
+    TriangleMesh far = withUnusedVertex(withHole(bare(icosphere(3))));
+    far.points.back() = {1e6, 0, 0};  // counts nowhere
+    MendOptions options;
+    options.maxHoleMm = 1;
+    expectMended(mend(far, options));
 }
 
 TEST(Mend, RefusesWhatEnclosesNothing) {

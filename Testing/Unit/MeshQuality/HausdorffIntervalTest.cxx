@@ -398,6 +398,16 @@ TEST(HausdorffInterval, UnusedVerticesDoNotCount) {
     EXPECT_LE(hausdorffDistance(cube, cubeMesh()).combined.upperMm, kRounding);
 }
 
+/// An unused vertex that comes first was taken for the farthest of vertices that all lie at 0.
+TEST(HausdorffInterval, UnusedVerticesDoNotCountWhereAllElseIsEqual) {
+    TriangleMesh cube = cubeMesh(), first = cube;
+    first.points.insert(first.points.begin(), {7, 7, 7});
+    for (Triangle& t : first.triangles) {
+        for (VertexId& v : t) ++v;
+    }
+    EXPECT_LE(hausdorffDistance(first, cube).combined.upperMm, kRounding);
+}
+
 TEST(HausdorffInterval, RefusesWhatCannotBeMeasured) {
     const TriangleMesh cube = cubeMesh();
     EXPECT_THROW(hausdorffDistance({}, cube), InvalidInput);

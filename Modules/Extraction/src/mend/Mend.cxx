@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Components.h"
@@ -18,6 +20,7 @@
 #include "mend/MendDistances.h"
 #include "mend/MendInput.h"
 #include "mend/MendRegion.h"
+#include "mend/NearnessProof.h"
 #include "mend/WindingField.h"
 
 namespace adaptiso {
@@ -41,6 +44,7 @@ std::string textOf(const Vec3& p) {
 
 double checkedBound(const MendOptions& options, double diagonal) {
     const double bound = options.maxErrorMm.value_or(MendOptions::kPartOfDiagonal * diagonal);
+    if (diagonal == 0) throw InvalidInput("mend: no triangle has an area");
     if (!(bound > 0) || !std::isfinite(bound)) {
         throw InvalidInput("mend: maxErrorMm must be more than 0");
     }
@@ -59,6 +63,19 @@ double spacingFor(double boundMm) {
     int exponent = 0;
     std::frexp(boundMm / std::sqrt(3.0), &exponent);
     return std::ldexp(1, exponent - 1);
+}
+
+/// Planes of the lattice, a hundredth of a cell apart, must be told apart where the mesh lies.
+void requireDigits(const BoundingBox& box, double diagonal, double boundMm) {
+    double farthest = 0;
+    for (const Vec3& p : {box.minimum, box.maximum}) {
+        farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
+    const double spacing = spacingFor(boundMm / 2);  // points may move by some of the bound
+    if (!(diagonal > 1e-90 && diagonal < 1e90) || spacing / 128 < farthest * 4.5e-16) {
+        throw InvalidInput("mend: coordinates of " + formatShort(farthest) +
+                           " have too few digits for a bound of " + formatShort(boundMm) + " mm");
+    }
 }
 
 std::vector<TriangleView::Triangle> inShort(const TriangleMesh& mesh) {
@@ -116,11 +133,13 @@ void dropTriangles(MendAssembly& assembly, const std::vector<std::uint8_t>& isDr
         assembly.mesh.triangles[next] = assembly.mesh.triangles[t];
         assembly.source[next] = assembly.source[t];
         assembly.cell[next] = assembly.cell[t];
+        assembly.origin[next] = assembly.origin[t];
         ++next;
     }
     assembly.mesh.triangles.resize(next);
     assembly.source.resize(next);
     assembly.cell.resize(next);
+    assembly.origin.resize(next);
     assembly.mesh = withoutUnusedPoints(std::move(assembly.mesh));
 }
 
@@ -153,8 +172,63 @@ void dropCrumbs(MendAssembly& assembly, double spacingMm) {
         if (!piece.hasNew || 2 * std::abs(piece.volume) > spacingMm * piece.area) continue;
         isDropped[t] = 1;
         hasCrumbs = true;
+        if (assembly.origin[t] < 0) continue;
+        assembly.inner.push_back(cornersOf(assembly.mesh, static_cast<std::int64_t>(t)));
+        assembly.innerOf.push_back(static_cast<std::uint32_t>(assembly.origin[t]));
     }
     if (hasCrumbs) dropTriangles(assembly, isDropped);
+}
+
+/// Gives each fan of triangles at a point a point of its own: holes left open may meet there.
+void splitFans(TriangleMesh& mesh) {
+    const auto corners = std::ssize(mesh.triangles) * 3;
+    DisjointSets fans(corners);
+    std::map<std::pair<VertexId, VertexId>, std::int64_t> at;  // a half-edge's first corner
+    for (std::int64_t c = 0; c < corners; ++c) {
+        const Triangle& t = mesh.triangles[c / 3];
+        const std::int64_t next = c / 3 * 3 + (c + 1) % 3;
+        const auto beside = at.find({t[(c + 1) % 3], t[c % 3]});
+        if (beside != at.end()) {
+            const std::int64_t other = beside->second;
+            fans.join(c, other / 3 * 3 + (other + 1) % 3);
+            fans.join(next, other);
+        }
+        at.emplace(std::pair(t[c % 3], t[(c + 1) % 3]), c);
+    }
+    std::map<std::int64_t, VertexId> pointOf;
+    std::vector<std::uint8_t> isTaken(mesh.points.size());
+    for (std::int64_t c = 0; c < corners; ++c) {
+        VertexId& v = mesh.triangles[c / 3][c % 3];
+        const auto [found, isNew] = pointOf.try_emplace(fans.find(c), v);
+        if (isNew && std::exchange(isTaken[v], std::uint8_t{1}) != 0) {
+            found->second = std::ssize(mesh.points);
+            mesh.points.push_back(Vec3(mesh.points[v]));
+        }
+        v = found->second;
+    }
+}
+
+[[noreturn]] void refuseHole(const MendedPlace& place, double maxHoleMm) {
+    throw InvalidInput("mend: a hole near " + textOf(place.middleMm) + " is " +
+                       formatMeasure(place.spanMm) + " mm wide, more than maxHoleMm, " +
+                       formatMeasure(maxHoleMm) + " mm");
+}
+
+/// Refuses a hole that is too wide before work begins, where a cap closes it.
+void requireNarrowHoles(const MendInput& input, double boundMm, double maxHoleMm) {
+    if (input.capOf.empty()) return;
+    const TriangleMesh given = input.given();
+    const detail::NearnessProof proof(given, boundMm);
+    std::vector<std::uint8_t> isFar(input.mesh.triangles.size());
+    for (std::int64_t t = input.firstCap(); t < std::ssize(input.mesh.triangles); ++t) {
+        detail::NearnessProof::Result found;
+        proof.prove(cornersOf(input.mesh, t), spacingFor(boundMm) / 4, found);
+        isFar[t] = found.others.empty() ? 0 : 1;
+    }
+    const auto places = detail::connectedPlaces(input.mesh, isFar);
+    if (!places.empty() && places[0].first.spanMm > maxHoleMm) {
+        refuseHole(places[0].first, maxHoleMm);
+    }
 }
 
 /// Lists the holes that were closed; refuses or opens those that are too wide.
@@ -171,14 +245,28 @@ void judgeHoles(MendAssembly& assembly, double maxHoleMm, bool leavesOpen,
             continue;
         }
         if (!leavesOpen) {
-            throw InvalidInput("mend: a hole near " + textOf(place.middleMm) + " is " +
-                               formatMeasure(place.spanMm) + " mm wide, more than maxHoleMm, " +
-                               formatMeasure(maxHoleMm) + " mm");
+            refuseHole(place, maxHoleMm);
         }
         statistics.leftOpen.push_back(place);
         for (const std::int64_t t : triangles) isOpened[t] = 1;
     }
-    if (!statistics.leftOpen.empty()) dropTriangles(assembly, isOpened);
+    if (statistics.leftOpen.empty()) return;
+    dropTriangles(assembly, isOpened);
+    splitFans(assembly.mesh);
+}
+
+/// Counts the input's triangles that the result has, whole or in part.
+void countOrigins(const MendAssembly& assembly, const MendInput& input,
+                  MendStatistics& statistics) {
+    statistics.keptTriangles = statistics.cutTriangles = 0;
+    std::int64_t last = -1;  // parts of a triangle follow each other
+    for (std::size_t t = 0; t < assembly.source.size(); ++t) {
+        const std::int64_t origin = assembly.origin[t];
+        if (origin < 0 || origin >= input.firstCap()) continue;
+        if (assembly.source[t] == MendSource::Kept) ++statistics.keptTriangles;
+        if (assembly.source[t] == MendSource::Cut && origin != last) ++statistics.cutTriangles;
+        last = origin;
+    }
 }
 
 /// Grows the region until the result is sound.
@@ -206,28 +294,37 @@ bool mendIn(MendRegion& region, const MendInput& input, const detail::WindingFie
 
 Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
     if (mesh.triangles.empty()) throw InvalidInput("mend: the mesh has no triangle");
-    const double diagonal = norm(boundingBox(mesh).size());
+    detail::requireMendable(mesh);
+    BoundingBox box = BoundingBox::empty();  // of points that are used
+    for (std::int64_t t = 0; t < std::ssize(mesh.triangles); ++t)
+        box.add(boxOf(cornersOf(mesh, t)));
+    const double diagonal = norm(box.size());
     Mended result;
     MendStatistics& statistics = result.statistics;
     statistics.maxErrorMm = checkedBound(options, diagonal);
+    requireDigits(box, diagonal, statistics.maxErrorMm);
     const MendInput input = detail::prepareInput(mesh, statistics);
     const AabbTree tree(input.mesh);
     const detail::WindingField field(input.mesh, tree);
     const double boundMm = statistics.maxErrorMm - statistics.movedMm;
+    const double maxHoleMm = options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * diagonal);
+    if (!options.leavesHolesOpen) requireNarrowHoles(input, boundMm, maxHoleMm);
     for (std::size_t attempt = 0; attempt < kShifts.size(); ++attempt) {
-        const MendLattice lattice(boundingBox(input.mesh), spacingFor(boundMm), kShifts[attempt]);
+        const MendLattice lattice(box, spacingFor(boundMm), kShifts[attempt]);
         MendRegion region(input, tree, field, lattice);
         region.addFaults();
         MendAssembly assembly;
         if (!mendIn(region, input, field, lattice, options.progress, assembly)) continue;
         dropCrumbs(assembly, lattice.spacing());
+        statistics.filled.clear();
+        statistics.leftOpen.clear();
         if (assembly.mesh.triangles.empty()) {
-            throw InvalidInput("mend: the triangles enclose no volume");
+            throw InvalidInput("mend: the triangles enclose no volume that the bound, " +
+                               formatShort(statistics.maxErrorMm) + " mm, leaves");
         }
         statistics.cells = std::ssize(region.cells());
         statistics.latticeMm = region.isEmpty() ? 0 : lattice.spacing();
-        statistics.keptTriangles = assembly.keptTriangles;
-        statistics.cutTriangles = assembly.cutTriangles;
+        countOrigins(assembly, input, statistics);
         if (region.isEmpty() && assembly.mesh.triangles.size() == mesh.triangles.size() &&
             assembly.mesh.points.size() == mesh.points.size() &&
             input.mesh.triangles == mesh.triangles) {
@@ -236,8 +333,7 @@ Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
             return result;
         }
         findBridges(input, lattice, boundMm, assembly);
-        judgeHoles(assembly, options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * diagonal),
-                   options.leavesHolesOpen, statistics);
+        judgeHoles(assembly, maxHoleMm, options.leavesHolesOpen, statistics);
         detail::proveDistances(input, tree, field, region, lattice, assembly, boundMm, statistics);
         if (std::max(statistics.resultToInputMm, statistics.inputToResultMm) >
             statistics.maxErrorMm) {

@@ -150,16 +150,16 @@ private:
     }
 
     std::span<const EdgeCut> cutsOf(std::uint32_t edge) const {
-        const auto range =
+        const auto [first, last] =
             std::equal_range(cuts_.begin(), cuts_.end(), EdgeCut{edge, 0, 0, false},
                              [](const EdgeCut& a, const EdgeCut& b) { return a.edge < b.edge; });
-        return {range.first, range.second};
+        return {cuts_.data() + (first - cuts_.begin()), static_cast<std::size_t>(last - first)};
     }
     std::span<const CutSide> sidesOf(std::uint32_t triangle) const {
-        const auto range = std::equal_range(
+        const auto [first, last] = std::equal_range(
             sides_.begin(), sides_.end(), CutSide{triangle, 0, 0, Kind::None, 0},
             [](const CutSide& a, const CutSide& b) { return a.triangle < b.triangle; });
-        return {range.first, range.second};
+        return {sides_.data() + (first - sides_.begin()), static_cast<std::size_t>(last - first)};
     }
 
     /// The cells of a triangle go to the region.
@@ -265,23 +265,20 @@ private:
         }
         const auto groups = filler_.fill(result_.mesh.points, cornersOf(input_.mesh, t), corners);
         if (!groups) return false;
+        std::map<NodeId, std::int64_t> partAt;
         for (const PlanarGroup& group : *groups) {
             const std::int64_t part = std::ssize(parts_);
             parts_.push_back({t, group.triangles});
             for (const std::size_t loop : group.loops) {
                 for (const std::size_t n : loops[loop]) {
+                    partAt.emplace(sides[n].from, part);
                     if (sides[n].interval == kWithin) continue;
                     intervals_.emplace_back(sides[n].interval, part);
                 }
             }
-            for (const CutSide& side : sidesOf(t)) {
-                const bool isHere =
-                    std::any_of(group.loops.begin(), group.loops.end(), [&](std::size_t loop) {
-                        return std::find(corners[loop].begin(), corners[loop].end(), side.from) !=
-                               corners[loop].end();
-                    });
-                if (isHere) kinds_.push_back({part, side.kind, side.beyond});
-            }
+        }
+        for (const CutSide& side : sidesOf(t)) {
+            kinds_.push_back({partAt.at(side.from), side.kind, side.beyond});
         }
         return true;
     }
@@ -368,10 +365,12 @@ private:
         }
     }
 
-    void addTriangle(const std::array<NodeId, 3>& t, MendSource source, std::uint64_t cell) {
+    void addTriangle(const std::array<NodeId, 3>& t, MendSource source, std::uint64_t cell,
+                     std::int64_t origin) {
         result_.mesh.triangles.push_back({t[0], t[1], t[2]});
         result_.source.push_back(source);
         result_.cell.push_back(cell);
+        result_.origin.push_back(origin);
     }
 
     void addKept() {
@@ -381,26 +380,22 @@ private:
         for (std::uint32_t t = 0; t < count; ++t) {
             if (state_[t] == State::Kept) {
                 if (isBorder_[t] != 0) {
-                    ++result_.keptTriangles;
-                    addTriangle(input_.mesh.triangles[t], MendSource::Kept, 0);
+                    addTriangle(input_.mesh.triangles[t], MendSource::Kept, 0, t);
                 } else {
                     result_.inner.push_back(cornersOf(input_.mesh, t));
                     result_.innerOf.push_back(t);
                 }
             }
-            bool isCut = false;
             for (; part < parts_.size() && parts_[part].triangle == t; ++part) {
                 for (const auto& [a, b, c] : parts_[part].triangles) {
                     if (isBorder_[count + part] != 0) {
-                        isCut = true;
-                        addTriangle({a, b, c}, MendSource::Cut, 0);
+                        addTriangle({a, b, c}, MendSource::Cut, 0, t);
                     } else {
                         result_.inner.push_back({points[a], points[b], points[c]});
                         result_.innerOf.push_back(t);
                     }
                 }
             }
-            if (isCut) ++result_.cutTriangles;
         }
     }
 
@@ -490,7 +485,7 @@ private:
             first += length;
         }
         const auto add = [&](NodeId a, NodeId b, NodeId c) {
-            addTriangle({a, b, c}, source, cell);
+            addTriangle({a, b, c}, source, cell, -1);
         };
         if (isPlain && !needsFans(boxCase, crossings)) {
             for (int i = 0; i < boxCase.triangleCount; ++i) {

@@ -20,13 +20,13 @@ enum class MendSource : std::uint8_t {
 /// The input without the region, and new surface within it.
 struct MendAssembly {
     TriangleMesh mesh;
-    std::vector<MendSource> source;   ///< of a triangle
-    std::vector<std::uint64_t> cell;  ///< of a new one; 0 for others
-    /// Of the input, outside of the region and not of the solid's border: parts of triangles, and
+    std::vector<MendSource> source;    ///< of a triangle
+    std::vector<std::uint64_t> cell;   ///< of a new one; 0 for others
+    std::vector<std::int64_t> origin;  ///< the prepared input's triangle; -1 of a new one
+    /// Of the prepared input, outside of the region and not in the result: parts of triangles, and
     /// whose they are.
     std::vector<Corners> inner;
     std::vector<std::uint32_t> innerOf;
-    std::int64_t keptTriangles = 0, cutTriangles = 0;
     /// Cells to add to the region where the input could not be cut: the rest says nothing then.
     std::vector<std::uint64_t> trouble;
 };

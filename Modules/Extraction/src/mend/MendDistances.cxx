@@ -85,27 +85,18 @@ std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, int axis, double pla
     return kept;
 }
 
-/// What the region holds of a triangle, but in cells with new surface: it lies within a cell's
-/// diagonal of that.
-void addInRegion(const MendInput& input, const MendRegion& region, const MendLattice& lattice,
-                 const std::vector<std::uint64_t>& cellsWithSurface, std::uint32_t triangle,
-                 std::vector<LostPiece>& pieces) {
+/// What a cell holds of a triangle.
+void addInCell(const MendInput& input, const BoundingBox& cell, std::uint32_t triangle,
+               std::vector<LostPiece>& pieces) {
     const Corners corners = cornersOf(input.mesh, triangle);
-    region.forEachCellOf(corners, [&](const LatticePosition& cell) {
-        if (!region.contains(cell)) return;
-        if (std::binary_search(cellsWithSurface.begin(), cellsWithSurface.end(), keyOf(cell))) {
-            return;
-        }
-        const BoundingBox box = lattice.boxOf(cell, cell);
-        std::vector<Vec3> polygon(corners.begin(), corners.end());
-        for (int axis = 0; axis < 3; ++axis) {
-            polygon = clipped(polygon, axis, box.minimum[axis], 1);
-            polygon = clipped(polygon, axis, box.maximum[axis], -1);
-        }
-        for (std::size_t n = 2; n < polygon.size(); ++n) {
-            pieces.push_back({{polygon[0], polygon[n - 1], polygon[n]}, triangle});
-        }
-    });
+    std::vector<Vec3> polygon(corners.begin(), corners.end());
+    for (int axis = 0; axis < 3; ++axis) {
+        polygon = clipped(polygon, axis, cell.minimum[axis], 1);
+        polygon = clipped(polygon, axis, cell.maximum[axis], -1);
+    }
+    for (std::size_t n = 2; n < polygon.size(); ++n) {
+        pieces.push_back({{polygon[0], polygon[n - 1], polygon[n]}, triangle});
+    }
 }
 
 /// What could not be proved to lie near the result: of one piece.
@@ -166,13 +157,19 @@ std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> connectedPlaces(
 
 void findBridges(const MendInput& input, const MendLattice& lattice, double boundMm,
                  MendAssembly& assembly) {
-    const NearnessProof proof(input.mesh, boundMm);
+    const TriangleMesh given = input.given();
+    const NearnessProof proof(given, boundMm);
+    const bool hasCaps = !input.capOf.empty();
     parallelForPieces(std::ssize(assembly.source), 64, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t t = begin; t < end; ++t) {
-            if (assembly.source[t] != MendSource::Filled) continue;
+            MendSource& source = assembly.source[t];
+            const bool isInDoubt = source == MendSource::Filled ||
+                                   assembly.origin[t] >= input.firstCap() ||
+                                   (hasCaps && source == MendSource::Moved);
+            if (!isInDoubt) continue;
             NearnessProof::Result found;
             proof.prove(cornersOf(assembly.mesh, t), lattice.spacing() / 4, found);
-            if (found.others.empty()) assembly.source[t] = MendSource::Moved;
+            source = found.others.empty() ? MendSource::Moved : MendSource::Filled;
         }
     });
 }
@@ -192,40 +189,50 @@ void proveDistances(const MendInput& input, const AabbTree& tree, const WindingF
         HausdorffOptions options;
         options.isSymmetric = false;
         options.limitMm = boundMm;
-        statistics.resultToInputMm += hausdorffDistance(moved, input.mesh, options).aToB.upperMm;
+        statistics.resultToInputMm += hausdorffDistance(moved, input.given(), options).aToB.upperMm;
     }
     std::vector<LostPiece> pieces;
     for (std::size_t n = 0; n < assembly.inner.size(); ++n) {
+        if (assembly.innerOf[n] >= input.firstCap()) continue;
         pieces.push_back({assembly.inner[n], assembly.innerOf[n]});
     }
-    std::vector<std::uint32_t> touched;
+    const std::int64_t innerPieces = std::ssize(pieces);
+    std::vector<std::uint64_t> cellsWithSurface = assembly.cell;
+    std::sort(cellsWithSurface.begin(), cellsWithSurface.end());
+    double upperMm = 0;
     for (const std::uint64_t cell : region.cells()) {
+        // what lies in a cell with new surface is within a cell's diagonal of that
+        if (std::binary_search(cellsWithSurface.begin(), cellsWithSurface.end(), cell)) {
+            upperMm = std::sqrt(3.0) * lattice.spacing();
+            continue;
+        }
         const LatticePosition at = positionOf(cell);
-        tree.forEachOverlap(lattice.boxOf(at, at), [&](std::int64_t t) {
-            touched.push_back(static_cast<std::uint32_t>(t));
+        const BoundingBox box = lattice.boxOf(at, at);
+        tree.forEachOverlap(box, [&](std::int64_t t) {
+            if (t >= input.firstCap() || !mayTouch(cornersOf(input.mesh, t), box)) return;
+            addInCell(input, box, static_cast<std::uint32_t>(t), pieces);
         });
     }
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    std::vector<std::uint64_t> cells = assembly.cell;
-    std::sort(cells.begin(), cells.end());
-    for (const std::uint32_t t : touched) addInRegion(input, region, lattice, cells, t, pieces);
-    double upperMm = touched.empty() ? 0 : std::sqrt(3.0) * lattice.spacing();
+    const std::int64_t firstPair = std::ssize(pieces);
+    for (const LostPair& pair : input.lostPairs) pieces.push_back({pair.corners, pair.triangle});
     const NearnessProof proof(assembly.mesh, boundMm);
     std::vector<NearnessProof::Result> proved(pieces.size());
     std::vector<std::uint8_t> isInner(pieces.size());
     parallelForPieces(std::ssize(pieces), 64, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t n = begin; n < end; ++n) {
             const Corners& c = pieces[n].corners;
-            if (n < std::ssize(assembly.inner)) {
+            if (n < innerPieces) {
                 proved[n].others.push_back(c);  // dropped as a whole, however near
             } else {
                 proof.prove(c, lattice.spacing() / 4, proved[n]);
             }
             if (proved[n].others.empty()) continue;
-            isInner[n] =
-                field.at(1.0 / 3 * (c[0] + c[1] + c[2]), std::int64_t{pieces[n].triangle}) >= 1 ? 1
-                                                                                                : 0;
+            const Vec3 middle = 1.0 / 3 * (c[0] + c[1] + c[2]);
+            // half a turn less in front, half a turn more behind; pairs make no difference
+            const bool isWithin = n < firstPair
+                                      ? field.at(middle, std::int64_t{pieces[n].triangle}) >= 1
+                                      : field.at(middle) >= 0.5;
+            isInner[n] = isWithin ? 1 : 0;
         }
     });
     std::vector<FarPiece> far;

@@ -13,7 +13,8 @@ namespace adaptiso::detail {
 std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> connectedPlaces(
     const TriangleMesh& mesh, const std::vector<std::uint8_t>& isMarked);
 
-/// Takes what lies within the bound of the input, as a whole, for moved rather than filled.
+/// Takes new surface and caps for moved where they lie within the bound of the input as a whole,
+/// for filled where they do not.
 void findBridges(const MendInput& input, const MendLattice& lattice, double boundMm,
                  MendAssembly& assembly);
 

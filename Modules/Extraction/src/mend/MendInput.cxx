@@ -12,13 +12,15 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
+#include "mend/BorderCaps.h"
 #include "repair/FlatTriangles.h"
 
 namespace adaptiso::detail {
 namespace {
 
-/// Points may move by as much of the bound, to become one.
-constexpr double kNear = 0.05;
+/// Points of borders, and of triangles without area, may move by as much of the bound to become
+/// one.
+constexpr double kNearBorder = 0.2, kNearFlat = 0.05;
 
 /// How many triangles each edge has.
 std::vector<std::int64_t> edgeUses(const MendInput& input) {
@@ -27,23 +29,6 @@ std::vector<std::int64_t> edgeUses(const MendInput& input) {
         for (const std::uint32_t e : edges) ++uses[e];
     }
     return uses;
-}
-
-void requireMendable(const TriangleMesh& mesh) {
-    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
-        for (const VertexId v : mesh.triangles[n]) {
-            if (v < 0 || v >= std::ssize(mesh.points)) {
-                throw InvalidInput("mend: triangle " + std::to_string(n) + " names point " +
-                                   std::to_string(v) + " of " + std::to_string(mesh.points.size()));
-            }
-            if (!isFinite(mesh.points[v])) {
-                throw InvalidInput("mend: point " + std::to_string(v) + " is not finite");
-            }
-        }
-    }
-    if (mesh.points.size() > 0x7FFFFFFF || mesh.triangles.size() > 0x7FFFFFFF / 3) {
-        throw InvalidInput("mend: more than 2^31 points or edges");
-    }
 }
 
 /// Number of the first point at the place of each.
@@ -113,27 +98,52 @@ std::int64_t mergeNearBorderPoints(MendInput& input, double reachMm, double& mov
     const std::vector<VertexId> border = borderPoints(input);
     const auto& points = input.mesh.points;
     using Cell = std::array<std::int64_t, 3>;
+    const double side = 0.5 * reachMm;  // its diagonal is within reach
     const auto cellOf = [&](const Vec3& p) {
-        return Cell{static_cast<std::int64_t>(std::floor(p.x / reachMm)),
-                    static_cast<std::int64_t>(std::floor(p.y / reachMm)),
-                    static_cast<std::int64_t>(std::floor(p.z / reachMm))};
+        return Cell{static_cast<std::int64_t>(std::floor(p.x / side)),
+                    static_cast<std::int64_t>(std::floor(p.y / side)),
+                    static_cast<std::int64_t>(std::floor(p.z / side))};
     };
     std::vector<std::pair<Cell, VertexId>> sorted;
     for (const VertexId v : border) sorted.emplace_back(cellOf(points[v]), v);
     std::sort(sorted.begin(), sorted.end());
     DisjointSets sets(std::ssize(points));
-    for (const auto& [cell, v] : sorted) {
-        for (int n = 0; n < 9; ++n) {  // and the three cells along z in one go
-            const Cell low{cell[0] + n % 3 - 1, cell[1] + n / 3 - 1, cell[2] - 1};
-            for (auto at =
-                     std::lower_bound(sorted.begin(), sorted.end(), std::pair(low, VertexId{0}));
-                 at != sorted.end() && at->first[0] == low[0] && at->first[1] == low[1] &&
-                 at->first[2] <= cell[2] + 1;
-                 ++at) {
-                const VertexId other = at->second;
-                if (other >= v) continue;
-                if (squaredNorm(points[other] - points[v]) > reachMm * reachMm) continue;
-                sets.join(other, v);
+    // points of a cell are near each other; of neighbouring cells the first that are join all
+    std::vector<std::size_t> begins;
+    for (std::size_t n = 0; n < sorted.size(); ++n) {
+        if (n == 0 || sorted[n].first != sorted[n - 1].first) begins.push_back(n);
+        sets.join(sorted[begins.back()].second, sorted[n].second);
+    }
+    begins.push_back(sorted.size());
+    const auto areNear = [&](std::size_t one, std::size_t other) {
+        constexpr std::size_t kMostPairs = 4096;  // of more, points are taken for far
+        const std::size_t pairs =
+            (begins[one + 1] - begins[one]) * (begins[other + 1] - begins[other]);
+        if (pairs > kMostPairs) return false;
+        for (std::size_t i = begins[one]; i < begins[one + 1]; ++i) {
+            for (std::size_t j = begins[other]; j < begins[other + 1]; ++j) {
+                const Vec3 away = points[sorted[i].second] - points[sorted[j].second];
+                if (squaredNorm(away) <= reachMm * reachMm) return true;
+            }
+        }
+        return false;
+    };
+    for (std::size_t one = 0; one + 1 < begins.size(); ++one) {
+        const Cell& cell = sorted[begins[one]].first;
+        for (std::int64_t x = -2; x <= 2; ++x) {
+            for (std::int64_t y = -2; y <= 2; ++y) {
+                const Cell low{cell[0] + x, cell[1] + y, cell[2] - 2};
+                const auto from = std::lower_bound(
+                    begins.begin(), begins.end() - 1, low,
+                    [&](std::size_t n, const Cell& than) { return sorted[n].first < than; });
+                for (auto at = from; at + 1 != begins.end(); ++at) {
+                    const Cell& there = sorted[*at].first;
+                    if (there[0] != low[0] || there[1] != low[1] || there[2] > cell[2] + 2) break;
+                    const auto other = static_cast<std::size_t>(at - begins.begin());
+                    const VertexId a = sorted[begins[one]].second, b = sorted[*at].second;
+                    if (other >= one || sets.find(a) == sets.find(b)) continue;
+                    if (areNear(one, other)) sets.join(a, b);
+                }
             }
         }
     }
@@ -160,14 +170,19 @@ std::int64_t mergeNearBorderPoints(MendInput& input, double reachMm, double& mov
 /// Triangles to drop of those at one place: all but one that faces as more of them do. Where as
 /// many face either way, as walls of solids that touch, all go, but for those of the same points.
 /// \param keepsOne  of all
+/// \param gone  gets one of each set that goes
 std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
-                                      const std::vector<Triangle>& triangles, bool keepsOne) {
+                                      const std::vector<Triangle>& triangles, bool keepsOne,
+                                      std::vector<std::size_t>& gone) {
+    gone.clear();
     const std::vector<VertexId> place = placesOf(points);
     struct Placed {
         Triangle places;  ///< ascending
         std::size_t number;
         int facing;  ///< 1 or -1: whether an even number of swaps makes them so
-        auto operator<=>(const Placed&) const = default;
+        bool operator<(const Placed& o) const {
+            return places != o.places ? places < o.places : number < o.number;
+        }
     };
     std::vector<Placed> all;
     all.reserve(triangles.size());
@@ -195,7 +210,10 @@ std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
                 haveOnePoints && pointsOf(all[end].number) == pointsOf(all[begin].number);
             isDoubled[all[end].number] = 1;
         }
-        if (facing == 0 && !haveOnePoints && !keepsOne) continue;
+        if (facing == 0 && !haveOnePoints && !keepsOne) {
+            gone.push_back(all[begin].number);
+            continue;
+        }
         for (std::size_t n = begin; n < end; ++n) {
             if (facing * all[n].facing < 0) continue;
             isDoubled[all[n].number] = 0;
@@ -205,7 +223,9 @@ std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
     return isDoubled;
 }
 
-void dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm, MendStatistics& statistics) {
+/// \return  of what went with its counterpart, one of each
+std::vector<LostPair> dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm,
+                                         MendStatistics& statistics) {
     AreaTriangles area = withoutFlatTriangles(mesh, mayMoveMm);
     statistics.degenerateTriangles = area.flat;
     statistics.movedMm = area.movedMm;
@@ -217,9 +237,10 @@ void dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm, MendStatistics& st
             if (area.isLeftOut[n] == 0) kept.push_back(area.triangles[n]);
         }
     }
-    std::vector<std::uint8_t> isDoubled = findDoubled(mesh.points, kept, false);
+    std::vector<std::size_t> gone;
+    std::vector<std::uint8_t> isDoubled = findDoubled(mesh.points, kept, false, gone);
     if (std::find(isDoubled.begin(), isDoubled.end(), 0) == isDoubled.end()) {
-        isDoubled = findDoubled(mesh.points, kept, true);  // of a sheet with two sides, one
+        isDoubled = findDoubled(mesh.points, kept, true, gone);  // of a sheet with two sides, one
     }
     mesh.triangles.clear();
     for (std::size_t n = 0; n < kept.size(); ++n) {
@@ -227,6 +248,16 @@ void dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm, MendStatistics& st
     }
     statistics.duplicateTriangles = std::ssize(kept) - std::ssize(mesh.triangles);
     if (mesh.triangles.empty()) throw InvalidInput("mend: no triangle has an area");
+    std::vector<std::uint32_t> triangleAt(mesh.points.size());
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (const VertexId v : mesh.triangles[t]) triangleAt[v] = t;
+    }
+    std::vector<LostPair> lost;
+    for (const std::size_t n : gone) {
+        const auto& [a, b, c] = kept[n];
+        lost.push_back({{mesh.points[a], mesh.points[b], mesh.points[c]}, triangleAt[a]});
+    }
+    return lost;
 }
 
 /// The triangles at each edge, in their order.
@@ -387,7 +418,7 @@ std::vector<std::uint32_t> findBadVertices(const MendInput& input) {
     return bad;
 }
 
-void findCrossings(MendInput& input, MendStatistics& statistics) {
+void findCrossings(MendInput& input) {
     std::vector<TriangleView::Triangle> triangles;
     triangles.reserve(input.mesh.triangles.size());
     for (const auto& [a, b, c] : input.mesh.triangles) {
@@ -397,10 +428,28 @@ void findCrossings(MendInput& input, MendStatistics& statistics) {
     CrossingPairs crossing = findCrossingPairs({input.mesh.points, triangles});
     input.crossingPairs = std::move(crossing.pairs);
     input.undecided = std::move(crossing.undecided);
+}
+
+void countCrossing(const MendInput& input, MendStatistics& statistics) {
     std::vector<std::uint32_t> all = input.undecided;
     for (const auto& pair : input.crossingPairs) all.insert(all.end(), pair.begin(), pair.end());
     std::sort(all.begin(), all.end());
     statistics.crossingTriangles = std::unique(all.begin(), all.end()) - all.begin();
+}
+
+/// Finds the triangles of each edge, and whether it is sound.
+void judgeEdges(MendInput& input, MendStatistics& statistics) {
+    const Buckets<std::uint32_t> atEdge = trianglesAtEdges(input);
+    for (std::uint32_t e = 0; e < input.edges.size(); ++e) {
+        MendInput::Edge& edge = input.edges[e];
+        const auto at = atEdge.of(e);
+        if (at.size() > 2) ++statistics.badEdges;
+        if (at.size() != 2) continue;
+        const bool up = runsUpAlong(input, at[0], e);
+        edge.isSound = up != runsUpAlong(input, at[1], e);
+        edge.triangles = {at[up ? 0 : 1], at[up ? 1 : 0]};
+        if (!edge.isSound) ++statistics.badEdges;
+    }
 }
 
 }  // namespace
@@ -433,35 +482,52 @@ void findEdges(MendInput& input) {
     }
 }
 
+void requireMendable(const TriangleMesh& mesh) {
+    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+        for (const VertexId v : mesh.triangles[n]) {
+            if (v < 0 || v >= std::ssize(mesh.points)) {
+                throw InvalidInput("mend: triangle " + std::to_string(n) + " names point " +
+                                   std::to_string(v) + " of " + std::to_string(mesh.points.size()));
+            }
+            if (!isFinite(mesh.points[v])) {
+                throw InvalidInput("mend: point " + std::to_string(v) + " is not finite");
+            }
+        }
+    }
+    if (mesh.points.size() > 0x7FFFFFFF || mesh.triangles.size() > 0x7FFFFFFF / 3) {
+        throw InvalidInput("mend: more than 2^31 points or edges");
+    }
+}
+
 MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
-    requireMendable(mesh);
     MendInput input;
     input.mesh.points = mesh.points;
     input.mesh.triangles = mesh.triangles;
-    dropFlatAndDoubled(input.mesh, kNear * statistics.maxErrorMm, statistics);
+    input.lostPairs = dropFlatAndDoubled(input.mesh, kNearFlat * statistics.maxErrorMm, statistics);
     findEdges(input);
     statistics.mergedPoints = mergeBorderPoints(input);
+    double movedMm = 0;
     statistics.mergedPoints +=
-        mergeNearBorderPoints(input, kNear * statistics.maxErrorMm, statistics.movedMm);
-    const Buckets<std::uint32_t> atEdge = trianglesAtEdges(input);
-    Sheets sheets = makeSheetsFaceOneWay(input, atEdge);
-    turnSheetsOutward(input, sheets);
-    statistics.flippedTriangles =
-        std::count(sheets.isTurned.begin(), sheets.isTurned.end(), std::uint8_t{1});
-    for (std::uint32_t e = 0; e < input.edges.size(); ++e) {
-        MendInput::Edge& edge = input.edges[e];
-        const auto at = atEdge.of(e);
-        if (at.size() == 1) ++statistics.borderEdges;
-        if (at.size() > 2) ++statistics.badEdges;
-        if (at.size() != 2) continue;
-        const bool up = runsUpAlong(input, at[0], e);
-        edge.isSound = up != runsUpAlong(input, at[1], e);
-        edge.triangles = {at[up ? 0 : 1], at[up ? 1 : 0]};
-        if (!edge.isSound) ++statistics.badEdges;
+        mergeNearBorderPoints(input, kNearBorder * statistics.maxErrorMm, movedMm);
+    statistics.movedMm += movedMm;  // a point may have moved before
+    for (const std::int64_t uses : edgeUses(input)) {
+        if (uses == 1) ++statistics.borderEdges;
     }
+    std::vector<std::uint8_t> isTurned =
+        makeSheetsFaceOneWay(input, trianglesAtEdges(input)).isTurned;
+    addCaps(input);
+    findEdges(input);
+    Sheets sheets = makeSheetsFaceOneWay(input, trianglesAtEdges(input));
+    turnSheetsOutward(input, sheets);
+    for (std::size_t t = 0; t < isTurned.size(); ++t) {
+        if (sheets.isTurned[t] != isTurned[t]) ++statistics.flippedTriangles;
+    }
+    findCrossings(input);
+    if (dropCrossingCaps(input)) findEdges(input);
+    countCrossing(input, statistics);
+    judgeEdges(input, statistics);
     input.badVertices = findBadVertices(input);
     statistics.badVertices = std::ssize(input.badVertices);
-    findCrossings(input, statistics);
     return input;
 }
 

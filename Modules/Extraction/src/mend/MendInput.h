@@ -9,6 +9,12 @@
 
 namespace adaptiso::detail {
 
+/// A triangle that is not in the prepared mesh, where another face of it went as well.
+struct LostPair {
+    Corners corners;
+    std::uint32_t triangle;  ///< of the prepared mesh, one that shares a corner, or the first
+};
+
 /// A mesh made ready to be mended: points of borders that lie at one place are one, triangles
 /// without area and doubled ones are gone, triangles that hang together face the same way.
 struct MendInput {
@@ -20,13 +26,28 @@ struct MendInput {
         bool isSound = false;
     };
 
-    TriangleMesh mesh;                                 ///< has the input's points
+    TriangleMesh mesh;                 ///< has the input's points; caps of holes come last
+    std::vector<std::uint32_t> capOf;  ///< of each triangle from firstCap() on, its cap
     std::vector<std::array<std::uint32_t, 3>> edgeOf;  ///< of a triangle, from corner i to i + 1
     std::vector<Edge> edges;
     std::vector<std::uint32_t> badVertices;  ///< that join triangles by themselves alone
     std::vector<std::array<std::uint32_t, 2>> crossingPairs;  ///< of triangles
     std::vector<std::uint32_t> undecided;  ///< triangles that lie near too many to be tested
+
+    /// Triangles of walls that both went, and one of the others with a corner there.
+    std::vector<LostPair> lostPairs;
+
+    std::int64_t firstCap() const { return std::ssize(mesh.triangles) - std::ssize(capOf); }
+    /// The mesh without caps.
+    TriangleMesh given() const {
+        TriangleMesh without = mesh;
+        without.triangles.resize(firstCap());
+        return without;
+    }
 };
+
+/// \throws InvalidInput  an index is out of range, a used point is not finite, there are too many
+void requireMendable(const TriangleMesh& mesh);
 
 /// \param statistics  gets what was found
 /// \throws InvalidInput  as mend()

@@ -133,7 +133,7 @@ MendRegion::MendRegion(const MendInput& input, const AabbTree& tree, const Windi
 void MendRegion::insert(const LatticePosition& cell) {
     for (const std::int64_t i : cell) {
         if (i < 1 || i >= (1 << kLatticeBits) - 2) {
-            throw InternalError("mend: the solid leaves the lattice");
+            throw InvalidInput("mend: the triangles have no inside: they are open or one-sided");
         }
     }
     if (!cells_.insert(keyOf(cell)).second) return;

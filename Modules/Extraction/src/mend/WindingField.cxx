@@ -43,7 +43,8 @@ WindingField::WindingField(const TriangleMesh& mesh, const AabbTree& tree)
 void WindingField::build(const HalvedLeaves& subtree) {
     Node& node = nodes_[subtree.node];
     node.begin = subtree.firstLeaf * kLeafTriangles;
-    node.end = std::min((subtree.firstLeaf + subtree.leaves) * kLeafTriangles, std::ssize(order_));
+    node.end = std::min<std::int64_t>((subtree.firstLeaf + subtree.leaves) * kLeafTriangles,
+                                      std::ssize(order_));
     node.behind = subtree.node + 2 * subtree.leaves - 1;
     double area = 0;
     for (std::int64_t n = node.begin; n < node.end; ++n) {
