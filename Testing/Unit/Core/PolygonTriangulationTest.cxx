@@ -40,13 +40,13 @@ void expectCovers(const Ring& ring) {
 /// Its corners in every order that begins elsewhere.
 void expectCoversFromEveryCorner(Ring ring) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
-        std::ranges::rotate(ring, ring.begin() + 1);
+        std::rotate(ring.begin(), ring.begin() + 1, ring.end());
         expectCovers(ring);
     }
 }
 
 Ring reversed(Ring ring) {
-    std::ranges::reverse(ring);
+    std::reverse(ring.begin(), ring.end());
     return ring;
 }
 
