@@ -144,7 +144,7 @@ class Refusals(MendTest):
     def test_what_can_not_be_mended_as_asked(self):
         self.write("cup.off", cup(BALL, 20))
         self.stays_out(CHECK_FAILED, "cup.off: can't be mended as asked: a hole near .* more than "
-                       "--max-hole, 6.93 mm", "cup.off", "--max-error", 1, "-o", "out.off")
+                       "--max-hole, 6.39 mm", "cup.off", "--max-error", 1, "-o", "out.off")
         report = self.mend("cup.off", "--max-error", 1, "-o", "out.off", code=CHECK_FAILED)
         self.assertEqual((report["passed"], report["output"], report["found"]), (False, None, None))
         report = self.mend("cup.off", "--max-error", 1, "--open", "-o", "open.off")

@@ -22,7 +22,7 @@ PEERS, PROGRAMS = BUILD / "Testing" / "Benchmark" / "Peers", BUILD / "bin"
 
 def call(*command):
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if not done.stdout:
+    if not done.stdout or done.returncode > 1:
         raise RuntimeError(f"{command[0]}: {done.stderr.strip()}")
     return json.loads(done.stdout)
 
@@ -79,15 +79,15 @@ def main():
         report = make(out)
         seconds = report.get("cpuSeconds", processor_time() - before)
         checked = call(PROGRAMS / "adaptiso-check", out, "--json", "-")["surfaces"][0]
-        compared = call(PROGRAMS / "adaptiso-compare", damaged, out, "--json", "-")["hausdorff"]
+        compared = call(PROGRAMS / "adaptiso-compare", damaged, out, "--json", "-")["distances"]
         failed = ", ".join(checked["failed"]) or "none"
-        print(f"| {name} | {checked['triangles']:,} | {failed} | {compared['bToA']['upperMm']:.2f} | "
-              f"{compared['aToB']['upperMm']:.2f} | {seconds:.2f} |", flush=True)
+        print(f"| {name} | {checked['triangles']:,} | {failed} | {compared['bToA']['hausdorff']['upperMm']:.2f} | "
+              f"{compared['aToB']['hausdorff']['upperMm']:.2f} | {seconds:.2f} |", flush=True)
 
     print("| method | triangles | failed checks | farthest from the input, mm | of the input, farthest, mm | s |")
     print("|---|---:|---|---:|---:|---:|")
     mended(f"adaptiso-mend, {bound} mm", lambda out: call(
-        PROGRAMS / "adaptiso-mend", damaged, "--max-error", bound, "--max-hole", 8, "-o", out, "--json", "-"))
+        PROGRAMS / "adaptiso-mend", damaged, "--max-error", bound, "--max-hole", 20, "-o", out, "--json", "-"))
     for alpha in (4 * bound, 2 * bound):
         mended(f"Alpha Wrap, alpha {alpha}, offset {bound / 2}", lambda out, alpha=alpha: call(
             PEERS / "peerCgal", "wrap", damaged, alpha, bound / 2, "-o", out))
