@@ -158,7 +158,7 @@ describe("simplify", () => {
 describe("mend", () => {
   it("closes a hole, and leaves it open where asked", async () => {
     const closed = await ballMesh(12), open = { ...closed, triangles: closed.triangles.slice(3) };
-    const mended = await mend(open, { maxErrorMm: 0.3 });
+    const mended = await mend(open, { maxErrorMm: 0.3, maxHoleMm: 5 });
     assert.equal(mended.report.output.closed, true);
     near(volume(mended.mesh), volume(closed), 0.1);
     await refused(mend(open, { maxErrorMm: 0.01, maxHoleMm: 0.1 }), 1, /^adaptiso-mend: .*--max-hole/);
