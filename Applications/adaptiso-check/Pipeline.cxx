@@ -367,7 +367,7 @@ Verdict verdictOf(const CheckRun& run) {
     return {run.hasPassed() ? kExitOk : kExitCheckFailed};
 }
 
-/// Whether adaptiso-mend is for what failed, and takes the surface.
+/// Whether adaptiso-mend mends what failed, and reads the surface.
 bool isForMending(const SurfaceRun& surface) {
     constexpr std::string_view kMended[] = {
         "closed",  "manifoldEdges",         "manifoldVertices",     "consistentOrientation",

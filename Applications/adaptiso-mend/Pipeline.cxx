@@ -51,7 +51,7 @@ void warnOfSize(const TriangleMesh& mesh, MendRun& run) {
     if (warning) run.warnings.push_back(*warning);
 }
 
-/// What mend() says, in the words of the command line.
+/// A message of mend() with the names of the command line's options.
 std::string inWordsOfOptions(std::string text) {
     constexpr std::pair<std::string_view, std::string_view> kWords[] = {
         {"mend: ", ""}, {"maxHoleMm", "--max-hole"}, {"maxErrorMm", "--max-error"}};

@@ -78,21 +78,11 @@ void requireDigits(const BoundingBox& box, double diagonal, double boundMm) {
     }
 }
 
-std::vector<TriangleView::Triangle> inShort(const TriangleMesh& mesh) {
-    std::vector<TriangleView::Triangle> triangles;
-    triangles.reserve(mesh.triangles.size());
-    for (const auto& [a, b, c] : mesh.triangles) {
-        triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                             static_cast<std::uint32_t>(c)});
-    }
-    return triangles;
-}
-
 /// Cells in and around triangles of the result that cross others or have no area, where these are
 /// not all in the region. \param isSound  set to whether there is none such triangle
 std::vector<std::uint64_t> cellsOfFaults(const MendAssembly& assembly, const MendRegion& region,
                                          bool& isSound) {
-    const auto triangles = inShort(assembly.mesh);
+    const auto triangles = detail::inShort(assembly.mesh);
     // the input's own were found apart
     const auto isNew = [&](std::uint32_t t) { return assembly.source[t] != MendSource::Kept; };
     const CrossingPairs crossing =

@@ -157,19 +157,23 @@ std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> connectedPlaces(
 
 void findBridges(const MendInput& input, const MendLattice& lattice, double boundMm,
                  MendAssembly& assembly) {
+    std::vector<std::int64_t> inDoubt;
+    for (std::int64_t t = 0; t < std::ssize(assembly.source); ++t) {
+        const MendSource source = assembly.source[t];
+        const bool isInDoubt = source == MendSource::Filled ||
+                               assembly.origin[t] >= input.firstCap() ||
+                               (!input.capOf.empty() && source == MendSource::Moved);
+        if (isInDoubt) inDoubt.push_back(t);
+    }
+    if (inDoubt.empty()) return;
     const TriangleMesh given = input.given();
     const NearnessProof proof(given, boundMm);
-    const bool hasCaps = !input.capOf.empty();
-    parallelForPieces(std::ssize(assembly.source), 64, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t t = begin; t < end; ++t) {
-            MendSource& source = assembly.source[t];
-            const bool isInDoubt = source == MendSource::Filled ||
-                                   assembly.origin[t] >= input.firstCap() ||
-                                   (hasCaps && source == MendSource::Moved);
-            if (!isInDoubt) continue;
+    parallelForPieces(std::ssize(inDoubt), 64, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t n = begin; n < end; ++n) {
             NearnessProof::Result found;
-            proof.prove(cornersOf(assembly.mesh, t), lattice.spacing() / 4, found);
-            source = found.others.empty() ? MendSource::Moved : MendSource::Filled;
+            proof.prove(cornersOf(assembly.mesh, inDoubt[n]), lattice.spacing() / 4, found);
+            assembly.source[inDoubt[n]] =
+                found.others.empty() ? MendSource::Moved : MendSource::Filled;
         }
     });
 }

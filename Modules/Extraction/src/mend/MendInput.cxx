@@ -419,12 +419,7 @@ std::vector<std::uint32_t> findBadVertices(const MendInput& input) {
 }
 
 void findCrossings(MendInput& input) {
-    std::vector<TriangleView::Triangle> triangles;
-    triangles.reserve(input.mesh.triangles.size());
-    for (const auto& [a, b, c] : input.mesh.triangles) {
-        triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
-                             static_cast<std::uint32_t>(c)});
-    }
+    const auto triangles = inShort(input.mesh);
     CrossingPairs crossing = findCrossingPairs({input.mesh.points, triangles});
     input.crossingPairs = std::move(crossing.pairs);
     input.undecided = std::move(crossing.undecided);
@@ -453,6 +448,16 @@ void judgeEdges(MendInput& input, MendStatistics& statistics) {
 }
 
 }  // namespace
+
+std::vector<TriangleView::Triangle> inShort(const TriangleMesh& mesh) {
+    std::vector<TriangleView::Triangle> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                             static_cast<std::uint32_t>(c)});
+    }
+    return triangles;
+}
 
 void findEdges(MendInput& input) {
     struct HalfEdge {

@@ -6,6 +6,7 @@
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/MeshQuality/TriangleTree.h"
 
 namespace adaptiso::detail {
 
@@ -52,6 +53,9 @@ void requireMendable(const TriangleMesh& mesh);
 /// \param statistics  gets what was found
 /// \throws InvalidInput  as mend()
 MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics);
+
+/// The triangles by 32-bit numbers. \pre requireMendable()
+std::vector<TriangleView::Triangle> inShort(const TriangleMesh& mesh);
 
 /// Finds the edges of triangles, each with the number of its triangles in `edgeOf` order.
 void findEdges(MendInput& input);

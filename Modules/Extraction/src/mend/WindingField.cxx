@@ -5,7 +5,6 @@
 #include <numbers>
 
 namespace adaptiso::detail {
-
 namespace {
 
 /// The angle of (x, y), radians, to some 1e-14, by arithmetic that every processor rounds alike.
@@ -23,8 +22,7 @@ double angleOf(double y, double x) {
     return y < 0 ? -angle : angle;
 }
 
-}  // namespace
-
+/// The solid angle of a triangle seen from a point, as a part of the whole sphere.
 double solidAnglePart(const Corners& triangle, const Vec3& p) {
     const Vec3 a = triangle[0] - p, b = triangle[1] - p, c = triangle[2] - p;
     const double la = norm(a), lb = norm(b), lc = norm(c);
@@ -32,6 +30,8 @@ double solidAnglePart(const Corners& triangle, const Vec3& p) {
                  x = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
     return angleOf(y, x) / (2 * std::numbers::pi);
 }
+
+}  // namespace
 
 WindingField::WindingField(const TriangleMesh& mesh, const AabbTree& tree)
     : mesh_(mesh), order_(tree.triangles().begin(), tree.triangles().end()) {

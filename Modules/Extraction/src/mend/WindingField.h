@@ -38,7 +38,4 @@ private:
     std::vector<Node> nodes_;  ///< numbered by HalvedLeaves
 };
 
-/// The solid angle of a triangle seen from a point, as a part of the whole sphere.
-double solidAnglePart(const Corners& triangle, const Vec3& p);
-
 }  // namespace adaptiso::detail
