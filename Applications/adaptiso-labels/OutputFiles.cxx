@@ -13,6 +13,7 @@
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextCells.h"
+#include "adaptiso/ImageIO/WriteNifti.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
 #include "adaptiso/MeshIO/MeshFile.h"
@@ -28,6 +29,7 @@ constexpr const char* kMsh22Name = "tetrahedra.msh";
 constexpr const char* kMsh41Name = "tetrahedra-4.1.msh";
 constexpr const char* kVtuName = "tetrahedra.vtu";
 constexpr const char* kDgfName = "tetrahedra.dgf";
+constexpr const char* kMapName = "map.nii.gz";
 
 MeshWriteOptions writeOptions(const LabelsRun& run) {
     MeshWriteOptions write;
@@ -202,8 +204,8 @@ bool isOwnFile(std::string_view name) {
     if (name.starts_with(kAll)) return isRegionFile(name.substr(kAll.size()), true);
     if (isLayerFile(name)) return true;
     constexpr std::string_view kNames[] = {
-        "walls.vtp",   "all.vtm",  "all.surf.gii", "all.label.gii", "regions.tsv",
-        "report.json", kMsh22Name, kMsh41Name,     kVtuName,        kDgfName};
+        "walls.vtp", "all.vtm",  "all.surf.gii", "all.label.gii", "regions.tsv", "report.json",
+        kMsh22Name,  kMsh41Name, kVtuName,       kDgfName,        kMapName};
     return std::ranges::find(kNames, name) != std::end(kNames);
 }
 
@@ -240,8 +242,8 @@ std::string regionsTable(const LabelsRun& run) {
     return text;
 }
 
-void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, LabelsRun& run,
-                AtomicFolder& folder) {
+void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, const VolumeView& map,
+                LabelsRun& run, AtomicFolder& folder) {
     const bool areVtp = run.options.format == kVtp;
     std::vector<std::function<void()>> works;  // the longest first
     const auto add = [&](auto&& work) { works.emplace_back(std::forward<decltype(work)>(work)); };
@@ -252,6 +254,9 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, Lab
                  labels = folder.place("all.label.gii")] {
                 writeJoined(surfaces, surface, labels, run);
             });
+        }
+        if (run.options.writesMap) {
+            add([&, path = folder.place(kMapName)] { writeNifti(map, path); });
         }
         std::vector<VtkBlock> blocks;
         for (std::size_t n = 0; n < run.regions.size(); ++n) {

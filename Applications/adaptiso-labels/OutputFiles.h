@@ -67,9 +67,11 @@ bool fitsGifti(const LabelsRun& run);
 ///   all.label.gii         the label of each of its vertices, and the label table; neither where it
 ///                         does not fit
 ///   regions.tsv           a BIDS lookup table with measures
+///   map.nii.gz            the map itself, where it is wanted
+/// \param map  with merged labels
 /// \throws FileError, InvalidInput  as writeMesh()
-void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, LabelsRun& run,
-                AtomicFolder& folder);
+void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, const VolumeView& map,
+                LabelsRun& run, AtomicFolder& folder);
 
 /// regions.tsv.
 std::string regionsTable(const LabelsRun& run);

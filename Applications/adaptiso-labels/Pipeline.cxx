@@ -58,7 +58,9 @@ OwnNames replaceable(const LabelsOptions& options, const fs::path& folder) {
 /// Checks the outputs before the map is read.
 void checkOutputs(const LabelsRun& run) {
     const LabelsOptions& options = run.options;
-    const std::array inputs{options.input, options.names, options.volume};
+    std::vector<fs::path> inputs{options.input, options.names, options.volume,
+                                 options.priority.list};
+    for (const MaskSource& mask : options.masks) inputs.push_back(mask.file);
     OutputPlan plan(inputs);
     plan.checkFolder(run.folder);
     plan.check(options.common, options.report);
@@ -87,12 +89,20 @@ void warnOfMissing(const LabelMerge& merge, const LabelCensus& census, const std
     }
 }
 
+/// Reads the map, or joins its masks.
+ReadVolume readOne(const LabelsOptions& options, LabelsRun& run) {
+    if (options.masks.empty()) return readImage(options.input, options.read);
+    std::string format;
+    Volume map = joinMasks(run, format);
+    return {std::move(map), format, {}};
+}
+
 /// Reads the map and learns what it holds.
 /// \throws InvalidInput  it is no label map, or holds nothing but 0
 /// \param options  the run's; names in them become labels
 Volume readMap(LabelsOptions& options, LabelsRun& run, LabelCensus& census) {
     const std::string name = baseName(options.input);
-    ReadVolume read = readImage(options.input, options.read);
+    ReadVolume read = readOne(options, run);
     resolveNames(options);
     const VolumeView& view = read.volume.view();
     run.map = {read.format, view.geometry(), view.pixelType(), valueRange(view), read.warnings, 0};
@@ -102,7 +112,7 @@ Volume readMap(LabelsOptions& options, LabelsRun& run, LabelCensus& census) {
     if (census.voxels.empty()) {
         throw InvalidInput(name + ": holds no label: all voxels are 0");
     }
-    if (census.looksLikeAnImage() && !options.takesAnyMap) {
+    if (census.looksLikeAnImage() && !options.takesAnyMap && options.masks.empty()) {
         throw InvalidInput(
             name + ": is an image, no label map: it has " + formatCount(run.map.labels) +
             " values, which change nearly from voxel to voxel (" +
@@ -190,12 +200,11 @@ void writePage(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeView&
 
 /// Each input as a run of its own. \return an exit code
 int runLabelsBatch(const LabelsOptions& options) {
-    return runBatch({"adaptiso-labels",
-                     "{name}-labels",
-                     {"--names", "--volume"},
-                     {"--output", "--report", "--pictures"}},
-                    findBatchItems(options.batch, options.inputs, inputStem), options.batch,
-                    options.common);
+    std::vector<std::string> files{"--names", "--volume"};
+    if (!options.priority.list.empty()) files.emplace_back("--priority");
+    return runBatch(
+        {"adaptiso-labels", "{name}-labels", files, {"--output", "--report", "--pictures"}},
+        findBatchItems(options.batch, options.inputs, inputStem), options.batch, options.common);
 }
 
 }  // namespace
@@ -206,6 +215,7 @@ int runLabels(const LabelsOptions& given) {
     LabelsRun run(options, outputFolder(options));
     run.format = &findMeshFormat("region" + options.format);
     run.frame = outputFrame(options.frame, *run.format);
+    run.stage("read", [&] { findMasks(options, run); });
     checkOutputs(run);
     requireMesher(options.tetrahedra);
 
@@ -242,7 +252,7 @@ int runLabels(const LabelsOptions& given) {
     if (run.writesFolder()) {
         run.stage("write", [&] {
             folder.emplace(run.folder, replaceable(options, run.folder));
-            writeFiles(complex, surfaces, run, *folder);
+            writeFiles(complex, surfaces, map, run, *folder);
             folder->writeText("report.json", folderReport(run));
             run.files = folder->files();
         });

@@ -12,6 +12,7 @@
 #include "Common/Mesher.h"
 #include "Common/ReportOutput.h"
 #include "LabelLists.h"
+#include "Masks.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
@@ -24,9 +25,12 @@ struct LabelsOptions {
     std::filesystem::path input;                ///< the one, when it is one
     BatchOptions batch;
     ReadOptions read;
-    bool takesAnyMap = false;     ///< also one that changes from voxel to voxel
-    std::filesystem::path names;  ///< a table; empty: one is looked for beside the input
-    LabelRanges labels;           ///< regions that are wanted; empty: all
+    bool joinsMasks = false;  ///< the inputs are masks of one map
+    MaskPriority priority;
+    std::vector<MaskSource> masks;  ///< of the one map; empty: the input is a map (findMasks())
+    bool takesAnyMap = false;       ///< also one that changes from voxel to voxel
+    std::filesystem::path names;    ///< a table; empty: one is looked for beside the input
+    LabelRanges labels;             ///< regions that are wanted; empty: all
     std::vector<LabelMerge> merges;
     SimplifyAims aims;
     MesherOptions tetrahedra;
@@ -34,6 +38,7 @@ struct LabelsOptions {
     std::map<Label, double> conductivities;  ///< of regions, S/m; empty: none are written
     std::filesystem::path output;  ///< a folder; empty: "<input>-labels" in the current one
     bool mayReplace = false;
+    bool writesMap = false;
     bool namesFiles = false;               ///< of regions by their names, else by their labels
     std::string format = ".vtp";           ///< of the regions' files, an extension
     std::optional<CoordinateFrame> frame;  ///< empty: the format's own
@@ -43,7 +48,7 @@ struct LabelsOptions {
 
     /// Whether each input is a run of its own (Batch.h).
     bool isBatch() const {
-        return batch.isRequested() || inputs.size() > 1 || holdsName(output) ||
+        return batch.isRequested() || (inputs.size() > 1 && !joinsMasks) || holdsName(output) ||
                holdsName(report.page) || holdsName(report.pictures);
     }
 };

@@ -17,7 +17,13 @@ namespace fs = std::filesystem;
 LabelTable readNames(LabelsRun& run) {
     const LabelsOptions& options = run.options;
     LabelTable table;
-    if (!options.names.empty()) {
+    if (!options.masks.empty()) {
+        table.format = "file names";
+        for (const MaskSource& mask : options.masks) {
+            table.entries.push_back({mask.label, mask.name, "", mask.color});
+        }
+        if (!options.names.empty()) run.names.files = {baseName(options.names)};
+    } else if (!options.names.empty()) {
         table = readLabelTable(options.names);
         run.names.files = {baseName(options.names)};
         addWarnings(run.warnings, table.warnings, baseName(options.names));

@@ -19,11 +19,33 @@
 namespace adaptiso::labels {
 namespace {
 
+/// null of one map
+Json masksJson(const LabelsRun& run) {
+    const JoinedMasks& joined = run.joined;
+    if (joined.masks.empty()) return nullptr;
+    Json files = Json::array(), overlaps = Json::array();
+    for (const MaskFate& mask : joined.masks) {
+        files.push_back({{"file", mask.file},
+                         {"label", mask.label},
+                         {"voxels", mask.voxels},
+                         {"keptVoxels", mask.keptVoxels}});
+    }
+    for (const MaskOverlap& overlap : joined.overlaps) {
+        overlaps.push_back(
+            {{"winner", overlap.winner}, {"loser", overlap.loser}, {"voxels", overlap.voxels}});
+    }
+    return {{"priority", run.options.priority.word()},
+            {"files", files},
+            {"sharedVoxels", joined.sharedVoxels},
+            {"overlaps", overlaps}};
+}
+
 Json inputJson(const LabelsRun& run) {
     const MapSummary& map = run.map;
     Json json{{"file", baseName(run.options.input)}};
     json.update(imageJson(map.format, map.geometry, map.pixelType, map.range, map.warnings));
     json["labels"] = map.labels;
+    json["masks"] = masksJson(run);
     return json;
 }
 
@@ -118,6 +140,15 @@ Json sharedJson(const LabelsRun& run) {
             {"passed", run.holdsPromises()},
             {"checks", checksJson(run)},
             {"warnings", run.warnings}};
+}
+
+void printMasks(std::ostream& out, const LabelsRun& run) {
+    const JoinedMasks& joined = run.joined;
+    if (joined.masks.empty()) return;
+    const auto empty = std::ranges::count(joined.masks, 0, &MaskFate::voxels);
+    out << "  joined of " << counted(std::ssize(joined.masks), "mask") << ", " << formatCount(empty)
+        << " of them empty; " << counted(joined.sharedVoxels, "voxel lies", "voxels lie")
+        << " in more than one\n";
 }
 
 void printWalls(std::ostream& out, const LabelsRun& run) {
@@ -317,6 +348,7 @@ void printReport(std::ostream& out, const LabelsRun& run) {
         << counted(std::ssize(run.regions), "region") << " of "
         << oneLine(run.options.input.filename().string()) << ", " << run.format->name << ", "
         << toString(run.frame) << '\n';
+    printMasks(out, run);
     printWalls(out, run);
     if (run.tetrahedra) {
         out << "  "

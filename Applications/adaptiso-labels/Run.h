@@ -75,6 +75,7 @@ struct LabelsRun : ProgramRun {
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
     MapSummary map{};
+    JoinedMasks joined{};
     NamesSummary names{};
     LabelStatistics statistics{};
     std::int64_t points = 0, triangles = 0;  ///< of the walls

@@ -63,6 +63,13 @@ void checkCombinations(const LabelsOptions& options) {
     if (!options.conductivities.empty() && !options.writesLayers) {
         throw UsageError("--conductivities: are written with --layers");
     }
+    if (options.joinsMasks && options.batch.isRequested()) {
+        throw UsageError(
+            "--join: makes one map of all INPUTs; many maps of masks are folders of a batch");
+    }
+    if (options.joinsMasks && options.output.empty()) {
+        throw UsageError("--join: needs -o DIR, as no input names the map");
+    }
     requireDisjoint(options.merges);
     const std::filesystem::path& output = options.output;
     const std::string extension = output.extension().string();
@@ -80,8 +87,16 @@ void declareInput(CLI::App& app, LabelsOptions& options) {
     OptionGroup(app).text(
         "INPUT", "", options.inputs,
         "A 3-D label map (SEG): NIfTI, NRRD, MetaImage, MGH, or a DICOM series, of whole "
-        "numbers, 0 where no region is; several make a batch");
+        "numbers, 0 where no region is; or a folder of masks, a file for each region; several "
+        "make a batch");
     declareReadOptions(app, options.read, kInput);
+    input.flag("--join", options.joinsMasks,
+               "Take the INPUTs for masks of one map, each a region, in place of a batch");
+    input.value(
+        "--priority", "FILE|largest|smallest",
+        [&options](const std::string& text) { options.priority = MaskPriority::parse(text); },
+        "Which mask keeps a voxel that several hold: the first of those that FILE names, a name a "
+        "line, or the largest, or the smallest (default: the last by name)");
     input.flag("--any-map", options.takesAnyMap,
                "Take the image for a label map even if its values change from voxel to voxel, as "
                "those of a scan do");
@@ -136,6 +151,9 @@ void declareOutput(CLI::App& app, LabelsOptions& options) {
         "--format", choiceName(formatWords(false)),
         [&options](const std::string& text) { options.format = parseFormat(text); },
         "The format of the regions' files (default: vtp)");
+    output.flag("--write-map", options.writesMap,
+                "Write the label map too, as map.nii.gz: of masks as they were joined, of merged "
+                "labels as they were merged");
     output.value(
         "--file-names", choiceName({"number", "name"}),
         [&options](const std::string& text) {
@@ -166,6 +184,8 @@ constexpr const char* kFooter = R"(Examples:
       the full resolution, which the bound is measured against
   adaptiso-labels head.nii.gz --layers --conductivities 1=0.33,2=0.0066,3=0.33
       the walls for OpenMEEG as well, in the folder layers
+  adaptiso-labels masks -o body --write-map
+      a folder of masks, a file for each region, joined to one map
   adaptiso-labels *_dseg.nii.gz --output-dir surfaces --skip-existing
       each image a run of its own
 

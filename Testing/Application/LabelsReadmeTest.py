@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 
-from labelsSupport import LabelsTest, three_boxes
+from labelsSupport import LabelsTest, label_map, three_boxes
 from support import BIN, SOURCE, Image, main, write_nifti
 
 README = SOURCE / "Applications" / "adaptiso-labels" / "README.md"
@@ -14,6 +14,10 @@ class Readme(LabelsTest):
     def test_examples_run(self):
         for name in ("seg", "other"):
             write_nifti(self.path(name + ".nii"), three_boxes())
+        self.path("masks").mkdir()
+        for first in (2, 6):
+            write_nifti(self.path(f"masks/from{first}.nii"), label_map(
+                (16, 8, 8), lambda i, j, k: first <= i < first + 4 and 2 <= j < 6 and 2 <= k < 6))
         write_nifti(self.path("scan.nii"), Image((16, 14, 12), "h", list(range(16 * 14 * 12))))
         self.path("colors.txt").write_text("1 left 255 0 0 0\n2 right 0 255 0 0\n7 mid 0 0 255 0\n")
         subprocess.run(["gzip", "seg.nii", "other.nii", "scan.nii"], cwd=self.folder, check=True)
@@ -23,10 +27,11 @@ class Readme(LabelsTest):
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual({path.name for path in self.folder.iterdir() if path.is_dir()},
-                         {"seg-labels", "some", "coarse", "again", "made"})
+                         {"seg-labels", "some", "coarse", "again", "made", "masks", "body"})
         self.assertEqual({path.name for path in self.path("some/regions").iterdir()},
                          {"1.stl", "7.stl"})
         self.assertEqual(self.table("some")[1]["name"], "both sides")
+        self.assertEqual(self.table("body")[2]["name"], "from6")
         self.assertTrue(self.path("page.html").is_file())
         self.assertTrue((self.path("made") / "other-labels" / "walls.vtp").is_file())
 

@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+#include "Common/Naming.h"
+#include "Common/RunApp.h"
+#include "Masks.h"
+#include "Pipeline.h"
+#include "Run.h"
+#include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/Phrases.h"
+#include "adaptiso/Core/Text.h"
+
+namespace adaptiso::labels {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isHidden(const fs::path& path) {
+    return path.filename().native().starts_with('.');
+}
+
+/// Named as an image: one that can't be read is refused, not left out.
+bool hasImageName(const fs::path& file) {
+    const std::string name = lowerCase(file.filename().string());
+    constexpr std::array<std::string_view, 10> kEndings{
+        ".nii", ".nii.gz", ".hdr", ".hdr.gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".mgh", ".mgz"};
+    return std::ranges::any_of(kEndings, [&](auto ending) { return name.ends_with(ending); });
+}
+
+/// The samples of an Analyze or NIfTI pair, which its .hdr stands for.
+bool isHalfOfPair(const fs::path& file) {
+    const std::string name = file.string(), lower = lowerCase(name);
+    std::error_code ignored;
+    for (const std::string_view ending : {".img", ".img.gz"}) {
+        if (!lower.ends_with(ending)) continue;
+        const std::string stem = name.substr(0, name.size() - ending.size());
+        if (fs::exists(stem + ".hdr", ignored) || fs::exists(stem + ".hdr.gz", ignored))
+            return true;
+    }
+    return false;
+}
+
+/// \return empty for a link out of `folder` and for what is no image
+std::string_view formatOf(const fs::path& file, const fs::path& folder) {
+    return liesIn(file, folder) ? recognizeImage(file) : std::string_view();
+}
+
+/// The images at the top of a folder, by path; none if it can't be listed.
+std::vector<fs::path> imagesOf(const fs::path& folder) {
+    std::vector<fs::path> images;
+    std::error_code error, ignored;
+    fs::directory_iterator entry(folder, error);
+    for (const fs::directory_iterator end; !error && entry != end; entry.increment(error)) {
+        const fs::path& path = entry->path();
+        if (isHidden(path) || entry->is_directory(ignored)) continue;
+        const bool isImage = hasImageName(path) || !formatOf(path, folder).empty();
+        if (isImage && !isHalfOfPair(path)) images.push_back(path);
+    }
+    std::ranges::sort(images);
+    return images;
+}
+
+/// A folder of more files than that is taken for DICOM's, whose reader refuses it.
+constexpr std::int64_t kMostEntries = 200'000;
+
+/// Whether a folder is a DICOM series, by what its files and those of its subfolders hold.
+bool holdsDicom(const fs::path& folder) {
+    std::int64_t entries = 0;
+    std::error_code error, ignored;
+    fs::recursive_directory_iterator entry(folder, error);
+    for (const fs::recursive_directory_iterator end; !error && entry != end;
+         entry.increment(error)) {
+        if (++entries > kMostEntries) return true;
+        const fs::path& path = entry->path();
+        if (entry->is_directory(ignored)) {
+            if (isHidden(path)) entry.disable_recursion_pending();
+        } else if (formatOf(path, folder) == "DICOM") {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::vector<fs::path> filesOfMasks(const LabelsOptions& options) {
+    if (options.joinsMasks) return options.inputs;
+    std::error_code error;
+    const fs::path& folder = options.input;
+    if (!fs::is_directory(folder, error) || recognizeImage(folder) == "Zarr") return {};
+    std::vector<fs::path> files = imagesOf(folder);
+    if (files.empty() || holdsDicom(folder)) return {};
+    for (const fs::path& file : files) {
+        if (fs::is_symlink(file, error)) requireIn(file, folder);
+    }
+    return files;
+}
+
+/// Masks by name.
+std::vector<MaskSource> sourcesOf(const std::vector<fs::path>& files, const ReadOptions& read) {
+    std::vector<MaskSource> masks;
+    for (const fs::path& file : files) {
+        masks.push_back({file, withoutControls(toUtf8(inputStem(file)))});
+        masks.back().read = read;
+    }
+    std::ranges::stable_sort(masks, {}, &MaskSource::name);
+    const auto twin = std::ranges::adjacent_find(masks, {}, &MaskSource::name);
+    if (twin != masks.end()) {
+        throw InvalidInput(twin[0].file.string() + " and " + baseName(twin[1].file) +
+                           ": are two masks of one name, " + twin->name +
+                           "; rename one, or move it away");
+    }
+    return masks;
+}
+
+/// The row of a name; case counts only where two differ by it.
+const LabelEntry* findName(const LabelTable& table, const std::string& name) {
+    const auto find = [&](const auto& isSame) -> const LabelEntry* {
+        const auto at = std::ranges::find_if(table.entries, [&](const LabelEntry& entry) {
+            return entry.value != 0 && isSame(entry.name);
+        });
+        return at == table.entries.end() ? nullptr : &*at;
+    };
+    if (const LabelEntry* const same = find([&](auto& other) { return other == name; }))
+        return same;
+    return find([&](auto& other) { return lowerCase(other) == lowerCase(name); });
+}
+
+/// Numbers and colours of a table's rows; masks that it does not name go behind them.
+void numberByTable(std::vector<MaskSource>& masks, const LabelTable& table, const std::string& file,
+                   LabelsRun& run) {
+    std::set<Label> taken;
+    std::vector<std::string> unnamed;
+    Label last = 0;
+    for (const LabelEntry& entry : table.entries) last = std::max(last, entry.value);
+    for (MaskSource& mask : masks) {
+        const LabelEntry* const entry = findName(table, mask.name);
+        if (entry != nullptr && taken.insert(entry->value).second) {
+            mask.label = entry->value;
+            mask.color = entry->color;
+        } else {
+            mask.label = ++last;
+            unnamed.push_back(mask.name);
+        }
+    }
+    std::ranges::sort(masks, {}, &MaskSource::label);
+    if (unnamed.empty()) return;
+    constexpr std::size_t kMost = 5;
+    const std::size_t count = unnamed.size();
+    if (count > kMost) unnamed.resize(kMost);
+    run.warnings.push_back({"label-nameless",
+                            "has no row for " + counted(static_cast<std::int64_t>(count), "mask") +
+                                ": " + joined(unnamed) + (count > kMost ? ", ..." : "") +
+                                "; numbered behind its rows",
+                            file});
+}
+
+}  // namespace
+
+void findMasks(LabelsOptions& options, LabelsRun& run) {
+    options.masks = sourcesOf(filesOfMasks(options), options.read);
+    if (options.masks.empty() && options.priority.rule != MaskPriority::Rule::LastByName) {
+        throw UsageError("--priority: is for masks, and " + baseName(options.input) +
+                         " is one image");
+    }
+    Label number = 0;
+    for (MaskSource& mask : options.masks) mask.label = ++number;
+    if (options.masks.empty() || options.names.empty()) return;
+    const LabelTable table = readLabelTable(options.names);
+    addWarnings(run.warnings, table.warnings, baseName(options.names));
+    numberByTable(options.masks, table, baseName(options.names), run);
+}
+
+}  // namespace adaptiso::labels
