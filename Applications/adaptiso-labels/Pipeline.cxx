@@ -170,13 +170,10 @@ void measure(const LabelComplex& complex, LabelsRun& run) {
 /// asked for.
 void warnOfCount(LabelsRun& run) {
     const std::optional<std::int64_t>& wanted = run.statistics.wantedTriangles;
-    const std::int64_t triangles = run.statistics.mapTriangles;
-    if (!wanted || triangles <= *wanted || run.options.aims.maxErrorMm) return;
-    run.warnings.push_back(countMissed(
-        baseName(run.options.input), "triangles in its walls", triangles, *wanted,
-        std::string("all regions, pieces and junctions") +
-            (run.isPart() ? " of the whole map (a count is of all of it, also with --labels)" : ""),
-        run.errorBoundMm()));
+    if (!wanted || run.triangles <= *wanted || run.options.aims.maxErrorMm) return;
+    run.warnings.push_back(countMissed(baseName(run.options.input), "triangles in its walls",
+                                       run.triangles, *wanted, "all regions, pieces and junctions",
+                                       run.errorBoundMm()));
 }
 
 std::string failureText(const LabelsRun& run) {

@@ -154,19 +154,16 @@ void printMasks(std::ostream& out, const LabelsRun& run) {
 void printWalls(std::ostream& out, const LabelsRun& run) {
     const LabelStatistics& statistics = run.statistics;
     out << "  " << counted(run.triangles, "triangle") << ", " << formatCount(run.points)
-        << " vertices in walls that are stored once; "
-        << (run.isPart() ? "the whole map has " + formatCount(statistics.mapTriangles) +
-                               ", at full resolution "
-                         : "the full resolution has ")
+        << " vertices in walls that are stored once; the full resolution has "
         << formatCount(statistics.fullTriangles) << '\n';
     if (run.errorBoundMm() > 0) {
         out << "  no wall farther than " << formatBound(run.errorBoundMm())
             << " mm from that of the full resolution, nor that from it (proved)\n";
     }
-    if (statistics.wantedTriangles && statistics.mapTriangles > *statistics.wantedTriangles) {
-        out << "  " << formatCount(*statistics.wantedTriangles) << " triangles were asked for"
-            << (run.isPart() ? " in the whole map" : "")
-            << "; keeping all regions, pieces and junctions left little to gain\n";
+    if (statistics.wantedTriangles && run.triangles > *statistics.wantedTriangles) {
+        out << "  " << formatCount(*statistics.wantedTriangles)
+            << " triangles were asked for; keeping all regions, pieces and junctions left little "
+               "to gain\n";
     }
 }
 
@@ -220,10 +217,7 @@ void addOptions(const LabelsRun& run, Report& report) {
         add("Merged", merge.name + " = " + joined(merge.labels, toText));
     }
     const LabelStatistics& statistics = run.statistics;
-    add("Triangles", formatCount(run.triangles) + " in walls stored once; " +
-                         (run.isPart() ? "whole map " + formatCount(statistics.mapTriangles) +
-                                             ", at full resolution "
-                                       : "full resolution ") +
+    add("Triangles", formatCount(run.triangles) + " in walls stored once; full resolution " +
                          formatCount(statistics.fullTriangles));
     add("Distance to the full resolution",
         run.errorBoundMm() > 0

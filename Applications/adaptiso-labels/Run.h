@@ -93,8 +93,6 @@ struct LabelsRun : ProgramRun {
         }
         return true;
     }
-    /// --labels chose regions: the walls are not all of the map's.
-    bool isPart() const { return !options.labels.empty(); }
     bool writesFolder() const { return holdsPromises() && !failsStrict(); }
 
     /// The bound that the walls must keep; empty with a count alone and at full resolution.

@@ -114,8 +114,8 @@ void declareRegions(CLI::App& app, LabelsOptions& options) {
         [&options](const std::string& text) {
             options.labels = parseLabelRanges("--labels", text);
         },
-        "Write these regions only, by number or name, 1,Hippocampus_L,10-20; their walls are those "
-        "that the whole map gives them");
+        "Write these regions only, by number or name, 1,Hippocampus_L,10-20; time and "
+        "memory go with their walls");
     regions.values(
         "--merge", "NAME=LIST",
         [&options](const std::vector<std::string>& texts) {

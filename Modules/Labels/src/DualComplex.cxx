@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string>
-#include <type_traits>
-#include <unordered_set>
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
@@ -37,7 +33,9 @@ void requireFewer(std::int64_t count) {
     }
 }
 
+/// The cells that a wanted wall runs through; a polygon of one has its corners in these alone.
 std::vector<WallCell> findCells(const LabelGrid& grid) {
+    const auto isWanted = [&](Label label) { return grid.isWanted(label); };
     std::vector<std::vector<WallCell>> layers(grid.size[2] - 1);
     parallelForPieces(grid.size[2] - 1, 1, [&](std::int64_t k, std::int64_t) {
         for (std::int64_t j = 0; j + 1 < grid.size[1]; ++j) {
@@ -53,10 +51,13 @@ std::vector<WallCell> findCells(const LabelGrid& grid) {
                 const Label next = grid.labels[place + 1];
                 const bool isNextUniform = isColumnOf(place + 1, next);
                 if (!isUniform || !isNextUniform || next != last) {
-                    WallCell cell;
-                    cell.place = place;
-                    cell.code = static_cast<std::uint16_t>(patternCode(grid.cornersOf(place)));
-                    layers[k].push_back(cell);
+                    const std::array<Label, 8> corners = grid.cornersOf(place);
+                    if (std::ranges::any_of(corners, isWanted)) {
+                        WallCell cell;
+                        cell.place = place;
+                        cell.code = static_cast<std::uint16_t>(patternCode(corners));
+                        layers[k].push_back(cell);
+                    }
                 }
                 last = next;
                 isUniform = isNextUniform;
@@ -323,6 +324,7 @@ void addPolygons(const LabelGrid& grid, DualComplex& complex) {
             const auto before = finder.before(c);
             for (int kind = 1; kind <= kEdgeKinds; ++kind) {
                 if (labels[0] == labels[kind]) continue;
+                if (!grid.isWanted(labels[0]) && !grid.isWanted(labels[kind])) continue;
                 const EdgeCorners corners = cornersOfEdge(complex.cells, before, kind);
                 if (corners.count < 3) continue;
                 piece.polygons.push_back({place,
@@ -377,64 +379,3 @@ std::vector<FacePoint> facePoints(const LabelGrid& grid, const DualComplex& comp
 }
 
 }  // namespace adaptiso::detail
-
-namespace adaptiso {
-
-namespace {
-
-template <class T>
-Label toLabel(T sample) {
-    using Limits = std::numeric_limits<Label>;
-    bool isLabel = false;
-    if constexpr (std::is_floating_point_v<T>) {
-        isLabel = sample >= static_cast<T>(Limits::min()) &&
-                  sample < -static_cast<T>(Limits::min()) && std::floor(sample) == sample;
-    } else {
-        isLabel = std::in_range<Label>(sample);
-    }
-    if (!isLabel) {
-        throw NotALabelMap("a label map holds whole numbers of 32 bits, this one " +
-                           std::to_string(sample));
-    }
-    return static_cast<Label>(sample);
-}
-
-}  // namespace
-
-std::vector<Label> findLabels(const VolumeView& volume) {
-    std::unordered_set<Label> found;  // a map may have tens of thousands
-    dispatchPixelType(volume, [&](const auto& view) {
-        Label last = 0;
-        for (std::int64_t n = 0; n < view.geometry.voxelCount(); ++n) {
-            const Label label = toLabel(view.samples[n]);
-            if (label != last && label != 0) found.insert(label);
-            last = label;
-        }
-    });
-    std::vector<Label> labels(found.begin(), found.end());
-    std::sort(labels.begin(), labels.end());
-    return labels;
-}
-
-namespace detail {
-
-LabelGrid makeGrid(const VolumeView& volume) {
-    const Index3& own = volume.geometry().size;
-    LabelGrid grid;
-    grid.size = {own[0] + 2, own[1] + 2, own[2] + 2};
-    grid.labels.assign(static_cast<std::size_t>(grid.size[0] * grid.size[1] * grid.size[2]), 0);
-    dispatchPixelType(volume, [&](const auto& view) {
-        parallelForPieces(own[2], 1, [&](std::int64_t k, std::int64_t) {
-            for (std::int64_t j = 0; j < own[1]; ++j) {
-                const auto* row = &view.at(0, j, k);
-                std::transform(row, row + own[0], &grid.labels[grid.placeOf(1, j + 1, k + 1)],
-                               [](auto sample) { return toLabel(sample); });
-            }
-        });
-    });
-    return grid;
-}
-
-}  // namespace detail
-
-}  // namespace adaptiso

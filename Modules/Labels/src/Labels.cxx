@@ -18,42 +18,12 @@ namespace {
 
 using namespace detail;
 
-/// The chosen labels, ascending.
-std::vector<Label> chosenLabels(const LabelGrid& grid, const LabelOptions& options) {
-    std::vector<Label> chosen = options.labels;
-    std::sort(chosen.begin(), chosen.end());
-    std::vector<std::uint8_t> isThere(chosen.size(), 0);
-    for (const Label label : grid.labels) {
-        if (label == 0) continue;
-        const auto at = std::lower_bound(chosen.begin(), chosen.end(), label);
-        if (at != chosen.end() && *at == label) isThere[at - chosen.begin()] = 1;
-    }
-    for (std::size_t n = 0; n < chosen.size(); ++n) {
-        if (isThere[n] == 0) {
-            throw InvalidInput("label " + std::to_string(chosen[n]) +
-                               (n > 0 && chosen[n] == chosen[n - 1]
-                                    ? " is chosen twice"
-                                    : " is chosen, but not in the map"));
-        }
-    }
-    return chosen;
-}
-
-/// Leaves only what a chosen region has, and the points that it uses, in their order.
-void keepRegions(LabelComplex& complex, const std::vector<Label>& chosen) {
-    const auto isChosen = [&](Label label) {
-        return std::binary_search(chosen.begin(), chosen.end(), label);
-    };
+/// Leaves out the points that no triangle uses.
+void dropUnused(LabelComplex& complex) {
     std::vector<VertexId> number(complex.points.size(), -1);
-    std::size_t kept = 0;
-    for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
-        if (!isChosen(complex.labels[t][0]) && !isChosen(complex.labels[t][1])) continue;
-        complex.triangles[kept] = complex.triangles[t];
-        complex.labels[kept++] = complex.labels[t];
-        for (const VertexId v : complex.triangles[t]) number[v] = 0;
+    for (const Triangle& t : complex.triangles) {
+        for (const VertexId v : t) number[v] = 0;
     }
-    complex.triangles.resize(kept);
-    complex.labels.resize(kept);
     VertexId used = 0;
     for (std::size_t v = 0; v < number.size(); ++v) {
         if (number[v] < 0) continue;
@@ -137,19 +107,19 @@ std::optional<SimplifyAims> simplification(const LabelOptions& options,
 LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options) {
     requireInRange(options, "extractLabels", true);
     requireNoNeedles(volume.geometry());
-    LabelGrid grid = makeGrid(volume);
-    const std::vector<Label> chosen = chosenLabels(grid, options);
-    LabelResult result = makeWalls(grid, volume.geometry(), options);
-    const auto wanted = simplification(options, volume.geometry(), result.statistics.fullTriangles);
+    LabelGrid grid = makeGrid(volume, options.labels);
+    const ImageGeometry geometry = grid.partOf(volume.geometry());
+    LabelResult result = makeWalls(grid, geometry, options);
+    // cells have corners beside the chosen regions too
+    if (!options.labels.empty()) dropUnused(result.complex);
+    const auto wanted = simplification(options, geometry, result.statistics.fullTriangles);
     if (wanted) {
         SimplifiedWalls walls =
-            simplifyWalls(std::move(result.complex), volume.geometry(), *wanted, options.progress);
+            simplifyWalls(std::move(result.complex), geometry, *wanted, options.progress);
         result.complex = std::move(walls.complex);
         result.statistics.errorBoundMm = walls.errorBoundMm;
         result.statistics.wantedTriangles = wanted->maxTriangles;
     }
-    result.statistics.mapTriangles = std::ssize(result.complex.triangles);
-    if (!chosen.empty()) keepRegions(result.complex, chosen);
     return result;
 }
 

@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::uint32_t kNoRegion = ~std::uint32_t{0};
 
-/// Labels as numbers from 0 on, ascending, without 0, the outside.
+/// Wanted labels as numbers from 0 on, ascending, without 0, the outside.
 class RegionNumbers {
 public:
-    explicit RegionNumbers(const DualComplex& complex) {
+    RegionNumbers(const LabelGrid& grid, const DualComplex& complex) {
         Label last = 0;
         for (const DualComplex::Polygon& polygon : complex.polygons) {
             for (const Label label : polygon.labels) {
-                if (label == 0 || label == last) continue;
+                if (label == 0 || label == last || !grid.isWanted(label)) continue;
                 labels_.push_back(last = label);
             }
             if (labels_.size() > kMany) sort();
@@ -29,7 +29,7 @@ public:
     }
 
     std::size_t count() const { return labels_.size(); }
-    /// kNoRegion for the outside.
+    /// kNoRegion for the outside and for what is not wanted.
     std::uint32_t of(Label label) const {
         const auto at = std::lower_bound(labels_.begin(), labels_.end(), label);
         return at != labels_.end() && *at == label
@@ -121,7 +121,7 @@ void restoreVolumes(const LabelGrid& grid, const DualComplex& complex,
                     const std::vector<Room>& rooms, std::vector<Vec3>& points) {
     constexpr int kRounds = 12;
     constexpr double kLargestStep = 0.2;  // voxels
-    const RegionNumbers numbers(complex);
+    const RegionNumbers numbers(grid, complex);
     std::vector<Region> regions = countVoxels(grid, numbers);
     std::vector<std::uint32_t> polygons(complex.polygons.size());
     std::vector<Sides> sides(complex.polygons.size());

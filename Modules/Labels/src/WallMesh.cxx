@@ -41,8 +41,15 @@ WallMesh::WallMesh(const WallPatch& patch)
 
 int WallMesh::orderOf(Id u, Id v) const {
     int order = 0;
-    for (const Id t : around(u)) order += triangles_[t].has(v) ? 1 : 0;
-    return order;
+    Id wall = kNone;
+    bool areSame = true;
+    for (const Id t : around(u)) {
+        if (!triangles_[t].has(v)) continue;
+        areSame = areSame && (order == 0 || triangles_[t].wall == wall);
+        wall = triangles_[t].wall;
+        ++order;
+    }
+    return order == 2 && !areSame ? 3 : order;
 }
 
 void WallMesh::findKinds() {

@@ -100,7 +100,8 @@ public:
         const auto& v = triangles_[t].v;
         return {points_[v[0]], points_[v[1]], points_[v[2]]};
     }
-    /// Triangles at the edge.
+    /// Triangles at the edge; where two walls meet there, with the wall between their other
+    /// regions, which is left out if neither is wanted.
     int orderOf(Id u, Id v) const;
 
     struct Change {

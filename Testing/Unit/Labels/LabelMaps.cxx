@@ -87,8 +87,9 @@ LabelOptions fullResolution() {
     if (const SelfIntersections crossings = findSelfIntersections(all); crossings.pairCount != 0) {
         return ::testing::AssertionFailure() << crossings.pairCount << " pairs of triangles cross";
     }
-    const std::vector<Label> labels = findLabels(map.view());
-    const std::vector<RegionMeasure> measures = measureRegions(complex);
+    std::vector<Label> labels = options.labels.empty() ? findLabels(map.view()) : options.labels;
+    std::ranges::sort(labels);
+    const std::vector<RegionMeasure> measures = measureRegions(complex, labels);
     if (measures.size() != labels.size()) {
         return ::testing::AssertionFailure()
                << measures.size() << " of " << labels.size() << " regions are there";

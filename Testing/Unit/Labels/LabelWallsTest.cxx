@@ -191,7 +191,6 @@ TEST(ExtractLabels, StatesTheDistanceItHasWhereACountCannotBeMet) {
     LabelOptions options;
     options.maxTriangles = 1;
     const LabelResult few = extractLabels(map.view(), options);
-    EXPECT_EQ(few.statistics.mapTriangles, std::ssize(few.complex.triangles));
     double farthestMm = 0;
     for (const auto& labels : std::set(full.labels.begin(), full.labels.end())) {
         const TriangleMesh a = wallOf(full, labels), b = wallOf(few.complex, labels);
@@ -247,24 +246,107 @@ TEST(ExtractLabels, MakesNoAngleBelowTheOneAskedFor) {
     EXPECT_TRUE(keepsPromises(map, options));
 }
 
-TEST(ExtractLabels, GivesChosenRegionsTheWallsOfTheWholeMap) {
+/// Chosen regions alone, and what they are in the whole map.
+struct ChosenWalls {
+    LabelComplex chosen, all;
+    ChosenWalls(const Map& map, LabelOptions options, const std::vector<Label>& labels) {
+        all = extractLabels(map.view(), options).complex;
+        options.labels = labels;
+        chosen = extractLabels(map.view(), options).complex;
+    }
+};
+
+TEST(ExtractLabels, GivesChosenRegionsTheWallsOfTheWholeMapBeforeSmoothing) {
+    // noise: the regions' box is the whole map, so that coordinates have the same digits
     const Map map = noise(obliqueGeometry({9, 8, 7}, {1, 1.5, 2}), 5, 77);
-    const LabelComplex all = extractLabels(map.view(), {}).complex;
     LabelOptions options;
-    options.labels = {4, 2};
-    const LabelComplex chosen = extractLabels(map.view(), options).complex;
+    options.smooth = false;
+    options.maxErrorMm = 0;
+    const ChosenWalls walls(map, options, {4, 2});
     std::set<Label> seen;
-    for (const auto& pair : chosen.labels) seen.insert(pair.begin(), pair.end());
+    for (const auto& pair : walls.chosen.labels) {
+        EXPECT_TRUE(pair[0] == 2 || pair[0] == 4 || pair[1] == 2 || pair[1] == 4);
+        seen.insert(pair.begin(), pair.end());
+    }
     EXPECT_EQ(seen, (std::set<Label>{0, 1, 2, 3, 4}));  // the other sides keep their numbers
     for (const Label label : {2, 4}) {
-        EXPECT_EQ(regionSurface(chosen, label), regionSurface(all, label));
+        EXPECT_EQ(regionSurface(walls.chosen, label), regionSurface(walls.all, label));
     }
-    EXPECT_EQ(measureRegions(chosen, {2})[0], measureRegions(all, {2})[0]);
-    std::vector<bool> isUsed(chosen.points.size(), false);
-    for (const Triangle& t : chosen.triangles) {
+    EXPECT_EQ(measureRegions(walls.chosen, {2})[0], measureRegions(walls.all, {2})[0]);
+    std::vector<bool> isUsed(walls.chosen.points.size(), false);
+    for (const Triangle& t : walls.chosen.triangles) {
         for (const VertexId v : t) isUsed[v] = true;
     }
     EXPECT_EQ(std::count(isUsed.begin(), isUsed.end(), false), 0);
+}
+
+TEST(ExtractLabels, KeepsThePromisesForChosenRegions) {
+    const Map noisy = noise(obliqueGeometry({12, 10, 9}, {1, 1.5, 2}), 5, 78);
+    const Map cells = longCells(obliqueGeometry({40, 14, 13}, {1, 1.5, 2}), 8);
+    for (const Map* map : {&noisy, &cells}) {
+        for (const std::vector<Label>& labels : {std::vector<Label>{2}, {4, 1}}) {
+            for (const double errorMm : {0.0, 0.5}) {
+                LabelOptions options;
+                options.maxErrorMm = errorMm;
+                options.labels = labels;
+                EXPECT_TRUE(keepsPromises(*map, options));
+                const ChosenWalls walls(*map, options, labels);
+                for (const RegionMeasure& own : measureRegions(walls.chosen, labels)) {
+                    const RegionMeasure other = measureRegions(walls.all, {own.label}).front();
+                    EXPECT_EQ(own.components, other.components);
+                    EXPECT_TRUE(std::ranges::equal(own.neighbours, other.neighbours, {},
+                                                   &RegionContact::label, &RegionContact::label));
+                }
+            }
+        }
+    }
+}
+
+// A wall that is left out does not let the curve at its end go: the wall to each neighbour keeps
+// its own bound.
+TEST(ExtractLabels, KeepsCurvesWhereNeighboursOfAChosenRegionMeet) {
+    // half a ball on two blocks, whose border runs straight below it
+    const Map map(centredGeometry({24, 24, 24}), [](const Index3& i) {
+        if (i[2] < 10) return i[0] < 12 ? 1 : 2;
+        const auto square = [](std::int64_t x) { return static_cast<double>(x * x); };
+        return square(i[0] - 12) + square(i[1] - 12) + square(i[2] - 10) < 64 ? 3 : 0;
+    });
+    LabelOptions options;
+    options.maxErrorMm = 0.2;
+    options.labels = {3};
+    const LabelComplex chosen = extractLabels(map.view(), options).complex;
+    std::set<VertexId> ofFirst, ofSecond;
+    for (std::size_t t = 0; t < chosen.triangles.size(); ++t) {
+        if (chosen.labels[t] == std::array<Label, 2>{1, 3}) {
+            ofFirst.insert(chosen.triangles[t].begin(), chosen.triangles[t].end());
+        }
+        if (chosen.labels[t] == std::array<Label, 2>{2, 3}) {
+            ofSecond.insert(chosen.triangles[t].begin(), chosen.triangles[t].end());
+        }
+    }
+    std::int64_t onBoth = 0;
+    for (const VertexId v : ofFirst) {
+        if (!ofSecond.contains(v)) continue;
+        ++onBoth;
+        // centres of voxels 11 and 12 lie half a mm from the middle; the curve is straight there
+        const double x =
+            chosen.points[v].x - 0.5 * (map.centre(11, 0, 0).x + map.centre(12, 0, 0).x);
+        EXPECT_LE(std::abs(x), 0.2 + 0.05);  // and 0.05 for what smoothing does at its ends
+    }
+    EXPECT_GE(onBoth, 2);
+    EXPECT_LT(onBoth, 9);  // of some 16 at full resolution
+}
+
+TEST(ExtractLabels, LooksAtTheCellsOfChosenRegionsAlone) {
+    const Map map(centredGeometry({24, 24, 24}), [](const Index3& i) {  // blocks of 6^3 voxels
+        return static_cast<Label>(1 + i[0] / 6 + 4 * (i[1] / 6) + 16 * (i[2] / 6));
+    });
+    LabelOptions options = fullResolution();
+    options.labels = {22};  // the second along each axis
+    const LabelResult one = extractLabels(map.view(), options);
+    EXPECT_EQ(one.statistics.cells, 7 * 7 * 7 - 5 * 5 * 5);
+    EXPECT_EQ(one.statistics.fullTriangles, std::ssize(one.complex.triangles));
+    EXPECT_EQ(measureRegions(one.complex, {22}).front().neighbours.size(), 26U - 20U);
 }
 
 TEST(ExtractLabels, GivesTheSameBytesForAnyNumberOfThreads) {

@@ -249,7 +249,7 @@ def labels(image: Any, *, labels: Optional[Iterable[Union[int, str]]] = None,
         array in C order is copied here.
     **options
     labels : iterable of int or str, optional
-        The regions that are wanted, by number or name; their walls are those that the whole map gives them. Default:
+        The regions that are wanted, by number or name; time and memory go with their walls. Default:
         all.
     names : path or mapping of int to str, optional
         Names by label, or a table of names and colours in a format that adaptiso-labels

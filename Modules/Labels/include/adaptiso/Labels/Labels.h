@@ -45,8 +45,10 @@ struct LabelOptions : SimplifyAims {
     /// Fraction of the least distance between planes of samples.
     static constexpr double kDefaultMaxErrorVoxels = 0.15;
 
-    /// The regions whose walls are wanted, each label once; empty: all. They are what the whole map
-    /// has, wherever the other side's label is wanted or not.
+    /// The regions whose walls are wanted, each label once; empty: all. Only these are made: time
+    /// and memory go with them. They keep their neighbours' labels and where these meet; as other
+    /// regions neither take part in smoothing nor hold what is simplified, points may lie elsewhere
+    /// than in the whole map, within the same rooms and the same bound.
     std::vector<Label> labels;
     /// Move walls off the staircase of the voxels, as far as no voxel centre changes its label.
     bool smooth = true;
@@ -54,8 +56,7 @@ struct LabelOptions : SimplifyAims {
 };
 
 struct LabelStatistics {
-    std::int64_t fullTriangles = 0;  ///< of the full-resolution walls of the whole map
-    std::int64_t mapTriangles = 0;   ///< of the whole map's walls as they were made
+    std::int64_t fullTriangles = 0;  ///< of the full-resolution walls
     std::int64_t cells = 0;          ///< cubes between eight voxel centres that a wall runs through
     /// Part of these: kept in several parts, as one vertex would pinch a region.
     std::int64_t dividedCells = 0;
@@ -88,8 +89,9 @@ struct LabelResult {
 /// \pre  samples are whole numbers that Label holds; options as their comments say; options.labels
 ///       are in the map                                          \throws InvalidInput otherwise,
 ///       NotALabelMap for a sample
-/// Cost: time grows with the voxels (a scan) and with the area of the walls. The same input gives
-/// the same bytes, whatever the number of threads.
+/// Cost: time grows with the voxels (a scan) and with the area of the wanted walls, memory with
+/// these and with the voxels of the box round their regions. The same input gives the same bytes,
+/// whatever the number of threads.
 LabelResult extractLabels(const VolumeView& volume, const LabelOptions& options = {});
 
 /// The labels of a map other than 0, ascending.

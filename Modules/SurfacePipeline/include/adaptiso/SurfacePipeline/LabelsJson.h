@@ -12,7 +12,7 @@ inline Json wallsJson(std::int64_t points, std::int64_t triangles, double errorB
                       const LabelStatistics& statistics) {
     return {{"points", points},
             {"triangles", triangles},
-            {"mapTriangles", statistics.mapTriangles},
+            {"mapTriangles", triangles},
             {"fullTriangles", statistics.fullTriangles},
             {"wantedTriangles", orNull(statistics.wantedTriangles)},
             {"errorBoundMm", number(errorBoundMm)},
