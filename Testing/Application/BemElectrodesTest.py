@@ -120,6 +120,50 @@ class Electrodes(BemTest):
         self.fails(BAD_INPUT, r"the inner skull's vertices lie \d\d mm below nasion and ears on average",
                    *self.labels(), f"--left-ear={right}", f"--right-ear={left}", *landmarks[:-1], "again")
 
+    def test_names_on_the_wrong_side_are_refused(self):
+        """Of 75 mm electrodes were off, without a word; where landmarks are right only names can say it."""
+        def write(directions_of, landmarks=True):
+            rows = [f"{name} {80 * x} {80 * y} {80 * z}" for name, (x, y, z) in directions_of.items()]
+            marks = [f"Nz 0 {SKIN} 0", f"LPA -{SKIN} 0 0", f"RPA {SKIN} 0 0"] if landmarks else []
+            self.path("cap.sfp").write_text("\n".join(rows + marks) + "\n")
+
+        def take(*frame, **options):
+            return self.bem(*self.labels(), "--electrodes", "cap.sfp", *frame, "-o", "model", "--force", **options)
+
+        right = {**directions(), "C4": (0.6, 0, 0.8), "F7": (-0.8, 0.6, 0)}
+        refusal = r"4 of 4 electrodes beside the middle lie on the side that their names exclude.*C3 48 mm to the right"
+        mirrored = {name: (-x, y, z) for name, (x, y, z) in right.items()}
+        for landmarks, frame in ((True, LANDMARKS), (False, ("--electrodes-in", "ras"))):
+            write(right, landmarks)
+            self.assertNotIn("exclude", take(*frame).stderr)
+            write(mirrored, landmarks)
+            self.fails(BAD_INPUT, refusal, *self.labels(), "--electrodes", "cap.sfp", *frame, "-o", "m")
+        # turned by half a turn: x and y have the wrong sign, as of LPS taken for RAS
+        write({name: (-x, -y, z) for name, (x, y, z) in right.items()}, False)
+        self.fails(BAD_INPUT, refusal, *self.labels(), "--electrodes", "cap.sfp", "--electrodes-in", "ras", "-o", "m")
+        # with nasion and ears turned too names are right beside these, but these beside the image
+        write(right)
+        self.assertIn("the left ear lies on the image's right", take("--electrodes-in", "lps").stderr)
+        # one of four is a doubt
+        write({**right, "C4": right["C3"], "C3": right["C4"], "P3": (-0.6, -0.6, 0.5), "P4": (0.6, -0.6, 0.5), "P8": (0.8, -0.6, 0)})
+        self.assertRegex(take(*LANDMARKS).stderr, r"2 of 7 electrodes beside the middle lie on the side that their names "
+                                                  r"exclude .*C4 48 mm to the left.*are these names exchanged\?")
+        # other names say no side
+        write({name + "x": place for name, place in mirrored.items()})
+        self.assertNotIn("exclude", take(*LANDMARKS).stderr)
+
+    def test_electrodes_are_as_uncertain_as_guessed_landmarks(self):
+        arguments = [*self.labels(), "--montage", "10-20", *LANDMARKS, "-o", "model", "--force"]
+        self.assertRegex(self.bem(*arguments).stderr, r"the inion was guessed by nasion and ears, to 20 mm; give it where that "
+                                                      r"matters; electrodes may be off by 8 mm on average, Oz by 18 mm")
+        points = {p["name"]: p for p in self.report()["electrodes"]["points"]}
+        # the inion at 20 mm up or down of 72: Cz moves by half of the arc, Oz by 9 tenths
+        arc = SKIN * math.atan(20 / SKIN)
+        self.assertAlmostEqual(points["Cz"]["uncertaintyMm"], 0.5 * arc, delta=1)
+        self.assertAlmostEqual(points["Oz"]["uncertaintyMm"], 0.9 * arc, delta=1)
+        self.assertNotIn("guessed", self.bem(*arguments, f"--inion=0,-{SKIN},0").stderr)
+        self.assertEqual(self.report()["electrodes"]["points"][0]["uncertaintyMm"], 0)
+
     def test_a_frame_that_nothing_tells_is_refused(self):
         self.path("cap.elc").write_text("UnitPosition mm\nPositions\n0 0 80\nLabels\nCz\n")
         self.fails(BAD_INPUT, "says no coordinate frame.*--electrodes-in ras, lps or tkras",
@@ -127,7 +171,7 @@ class Electrodes(BemTest):
 
     def test_positions_of_the_systems(self):
         for system, count in (("10-20", 21), ("10-10", 73), ("10-05", 277)):
-            self.bem(*self.labels(), "--montage", system, *LANDMARKS, "-o", "model", "--force")
+            self.bem(*self.labels(), "--montage", system, *LANDMARKS, f"--inion=0,-{SKIN},0", "-o", "model", "--force")
             table = self.table()
             self.assertEqual(len(table), count)
             self.assertLess(math.dist(table["Cz"], (0, 0, SKIN)), NEAR)

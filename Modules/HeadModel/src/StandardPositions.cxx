@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
@@ -7,6 +9,7 @@
 #include "FinishBoundaries.h"
 #include "SkinArcs.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/Landmarks.h"
 
 namespace adaptiso {
@@ -34,7 +37,12 @@ struct Frame {
     }
 };
 
-Frame frameOf(const TriangleMesh& skin, const Landmarks& landmarks) {
+/// What lies between nasion and ears.
+struct Base {
+    Vec3 nasion, leftEar, rightEar, middle, up;
+};
+
+Base baseOf(const TriangleMesh& skin, const Landmarks& landmarks) {
     constexpr double kMostMm = 30;
     std::vector<Vec3> places{landmarks.nasionMm, landmarks.leftEarMm, landmarks.rightEarMm};
     if (landmarks.inionMm) places.push_back(*landmarks.inionMm);
@@ -44,16 +52,33 @@ Frame frameOf(const TriangleMesh& skin, const Landmarks& landmarks) {
                            " mm from the skin, must be at most 30; is it of this head, in the "
                            "same space?");
     }
-    Frame frame{onto.pointsMm[0], {}, onto.pointsMm[1], onto.pointsMm[2], {}};
-    const Vec3 middle = 0.5 * (frame.leftEar + frame.rightEar);
-    const Vec3 up = normalized(cross(frame.rightEar - frame.leftEar, frame.nasion - middle));
-    const Vec3 back = normalized(middle - frame.nasion);
-    const RayHits behind = rayHits(skin, middle, back), above = rayHits(skin, middle, up);
-    if (behind.mm.empty() || above.mm.empty()) {
+    Base base{onto.pointsMm[0], onto.pointsMm[1], onto.pointsMm[2], {}, {}};
+    base.middle = 0.5 * (base.leftEar + base.rightEar);
+    base.up = normalized(cross(base.rightEar - base.leftEar, base.nasion - base.middle));
+    return base;
+}
+
+/// The skin farthest from between the ears, in a direction.
+Vec3 farthestOn(const TriangleMesh& skin, const Base& base, const Vec3& direction) {
+    const RayHits hits = rayHits(skin, base.middle, direction);
+    if (hits.mm.empty()) {
         throw InvalidInput("nasion and ears do not lie round the head; are left and right right?");
     }
-    frame.inion = landmarks.inionMm ? onto.pointsMm[3] : middle + behind.mm.back() * back;
-    frame.vertex = middle + above.mm.back() * up;
+    return base.middle + hits.mm.back() * direction;
+}
+
+Vec3 guessedInion(const TriangleMesh& skin, const Base& base) {
+    // 18 degrees of Colin's head, 15 of FreeSurfer's average; of EGI's average caps about 7
+    constexpr double kElevation = 13 * std::numbers::pi / 180;
+    const Vec3 back = normalized(base.middle - base.nasion);
+    return farthestOn(skin, base, std::cos(kElevation) * back + std::sin(kElevation) * base.up);
+}
+
+Frame frameOf(const TriangleMesh& skin, const Landmarks& landmarks) {
+    const Base base = baseOf(skin, landmarks);
+    Frame frame{base.nasion, {}, base.leftEar, base.rightEar, farthestOn(skin, base, base.up)};
+    frame.inion = landmarks.inionMm ? projectedOntoSkin({*landmarks.inionMm}, skin).pointsMm[0]
+                                    : guessedInion(skin, base);
     constexpr int kMostRounds = 20;
     constexpr double kEnoughMm = 0.01;
     for (int round = 0; round < kMostRounds; ++round) {
@@ -183,6 +208,34 @@ private:
 std::vector<NamedPoint> standardPositions(const TriangleMesh& skin, const Landmarks& landmarks,
                                           PositionSystem system) {
     return Positions(skin, landmarks, system).all();
+}
+
+Landmarks withInion(const TriangleMesh& skin, Landmarks landmarks) {
+    if (landmarks.inionMm) return landmarks;
+    constexpr double kInionMm = 20;
+    landmarks.inionMm = guessedInion(skin, baseOf(skin, landmarks));
+    landmarks.inionUncertaintyMm = kInionMm;
+    return landmarks;
+}
+
+std::optional<HeadSide> sideOfName(std::string_view name) {
+    static const std::set<std::string> prefixes = [] {
+        std::set<std::string> all{"fp", "o", "a", "m"};
+        for (const Row& row : kRows) {
+            all.insert({lowerCase(row.lateral), lowerCase(row.medial)});
+        }
+        return all;
+    }();
+    std::string plain = lowerCase(name);
+    if (plain == "iz" || plain == "nz") return HeadSide::Middle;
+    if (plain.ends_with('h')) plain.pop_back();
+    const std::size_t end = std::min(plain.find_first_of("z0123456789"), plain.size());
+    if (!prefixes.contains(plain.substr(0, end))) return std::nullopt;
+    const std::string rest = plain.substr(end);
+    if (rest == "z") return HeadSide::Middle;
+    if (rest == "10") return HeadSide::Right;
+    if (rest.size() != 1 || rest.front() == '0') return std::nullopt;
+    return (rest.front() - '0') % 2 != 0 ? HeadSide::Left : HeadSide::Right;
 }
 
 }  // namespace adaptiso

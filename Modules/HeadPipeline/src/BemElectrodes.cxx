@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
+#include "ElectrodeSides.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -12,6 +14,44 @@ namespace adaptiso {
 namespace {
 
 constexpr double kMostMovedMm = 60, kMuchMovedMm = 10;
+
+std::vector<Vec3> placesOf(const std::vector<NamedPoint>& points) {
+    std::vector<Vec3> places;
+    for (const NamedPoint& p : points) places.push_back(p.point);
+    return places;
+}
+
+void removePlacesOfTheHead(std::vector<NamedPoint>& points) {
+    std::erase_if(points, [](const NamedPoint& p) { return p.kind != PointKind::Electrode; });
+}
+
+/// Adds what guessed landmarks mean for the electrodes to the warning of them.
+/// \param positions  of the electrodes, by landmarks
+void carryUncertainty(const Landmarks& landmarks,
+                      const std::function<std::vector<Vec3>(const Landmarks&)>& positions,
+                      const std::vector<NamedPoint>& electrodes, BemModel& model,
+                      BemElectrodes& placed) {
+    if (!landmarks.areGuessed() && landmarks.inionUncertaintyMm == 0) return;
+    std::vector<double>& mm = placed.uncertaintyMm;
+    mm = carriedUncertaintyMm(model.meshes.back(), landmarks, positions);
+    double sum = 0;
+    for (const double value : mm) sum += value;
+    const auto farthest = std::ranges::max_element(mm);
+    const std::string text =
+        "; electrodes may be off by " + formatFixed(sum / static_cast<double>(mm.size()), 0) +
+        " mm on average, " +
+        visibleAscii(electrodes[static_cast<std::size_t>(farthest - mm.begin())].name) + " by " +
+        formatFixed(*farthest, 0) + " mm";
+    const auto told = std::ranges::find(model.warnings, "guessed-landmarks", &Warning::code);
+    if (told != model.warnings.end()) {
+        told->text += text;
+    } else {
+        model.warnings.push_back(
+            {"guessed-landmarks", "the inion was guessed by nasion and ears, to " +
+                                      formatShort(landmarks.inionUncertaintyMm) +
+                                      " mm; give it where that matters" + text});
+    }
+}
 
 /// The three landmarks among a file's points, if it has them all.
 std::optional<Landmarks> landmarksOf(const std::vector<NamedPoint>& points) {
@@ -149,9 +189,20 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
                 "give them");
         }
         move = byLandmarks(*own, *placed.landmarks);
+        std::vector<NamedPoint> electrodes = file.points;
+        removePlacesOfTheHead(electrodes);
         model.notes.push_back("electrodes: brought to the head by nasion and ears" +
                               (file.frameName.empty() ? "" : " (frame " + file.frameName + ")"));
         fitHeadPoints(file.points, *own, move, model, placed);
+        if (!electrodes.empty()) {
+            const auto moved = [&](const Landmarks& head) {
+                const AffineTransform by = byLandmarks(*own, head);
+                std::vector<Vec3> places = placesOf(electrodes);
+                for (Vec3& p : places) p = by(p);
+                return places;
+            };
+            carryUncertainty(*placed.landmarks, moved, electrodes, model, placed);
+        }
     } else {
         throw InvalidInput(
             "the file says no coordinate frame, and has no nasion and ears to find it by; state it "
@@ -179,13 +230,16 @@ void requireAbove(const Landmarks& landmarks, const std::vector<Vec3>& places,
 }
 
 void project(std::vector<NamedPoint> points, BemModel& model, BemElectrodes& placed) {
-    std::erase_if(points, [](const NamedPoint& p) { return p.kind != PointKind::Electrode; });
+    removePlacesOfTheHead(points);
     if (points.empty() && placed.headPoints) return;
     if (points.empty()) throw InvalidInput("the file holds no electrode");
-    std::vector<Vec3> places;
-    for (const NamedPoint& p : points) places.push_back(p.point);
+    const std::vector<Vec3> places = placesOf(points);
     if (placed.landmarks) requireAbove(*placed.landmarks, places, "the electrodes");
-    const OntoSkin onto = projectedOntoSkin(places, model.meshes.back());
+    const TriangleMesh& skin = model.meshes.back();
+    if (auto warning = doubtfulSides(points, placed.landmarks, skin)) {
+        model.warnings.push_back(*std::move(warning));
+    }
+    const OntoSkin onto = projectedOntoSkin(places, skin);
     placed.meanMovedMm = onto.meanMm;
     placed.farthestMovedMm = onto.farthestMm;
     placed.farthestName = points[onto.farthest].name;
@@ -221,11 +275,21 @@ void place(BemModel& model, BemElectrodes& placed) {
         const std::size_t innerSkull = model.options.boundaries.withBrain ? 1 : 0;
         requireAbove(*placed.landmarks, model.meshes[innerSkull].points,
                      "the inner skull's vertices");
+        if (auto warning = doubtfulSides(*placed.landmarks)) {
+            model.warnings.push_back(*std::move(warning));
+        }
     }
     if (!options.positions) return;
     if (!placed.landmarks) throw InvalidInput("positions need nasion and ears; give them");
-    placed.points = standardPositions(model.meshes.back(), *placed.landmarks, *options.positions);
+    const TriangleMesh& skin = model.meshes.back();
+    placed.points = standardPositions(skin, *placed.landmarks, *options.positions);
     placed.areComputed = true;
+    carryUncertainty(
+        withInion(skin, *placed.landmarks),
+        [&](const Landmarks& landmarks) {
+            return placesOf(standardPositions(skin, landmarks, *options.positions));
+        },
+        placed.points, model, placed);
     model.notes.push_back("electrodes: " + formatCount(std::ssize(placed.points)) +
                           " positions computed on the skin");
 }

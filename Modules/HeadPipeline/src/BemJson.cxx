@@ -85,7 +85,11 @@ Json electrodesJson(const BemModel& model) {
     if (!model.electrodes || model.electrodes->points.empty()) return nullptr;
     const BemElectrodes& e = *model.electrodes;
     Json points = Json::array();
-    for (const NamedPoint& p : e.points) points.push_back(pointJson(p.name, p.point));
+    for (std::size_t n = 0; n < e.points.size(); ++n) {
+        points.push_back(pointJson(e.points[n].name, e.points[n].point));
+        points.back()["uncertaintyMm"] =
+            e.uncertaintyMm.empty() ? number(0) : number(e.uncertaintyMm[n]);
+    }
     return {{"computed", e.areComputed},
             {"meanMovedMm", number(e.meanMovedMm)},
             {"farthestMovedMm", number(e.farthestMovedMm)},

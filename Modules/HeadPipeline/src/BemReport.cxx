@@ -176,9 +176,14 @@ void addElectrodes(const BemModel& model, Report& report) {
     const std::vector<NamedPoint> all = placed.all();
     if (all.empty()) return;
     ReportTable table{"Electrodes and landmarks", {"Name", "x, mm", "y, mm", "z, mm"}, {}};
-    for (const NamedPoint& p : all) {
-        table.rows.push_back({p.name, formatFixed(-p.point.x, 1), formatFixed(-p.point.y, 1),
-                              formatFixed(p.point.z, 1)});
+    const std::vector<double>& uncertainty = placed.uncertaintyMm;
+    if (!uncertainty.empty()) table.columns.push_back("may be off by, mm");
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        const Vec3& p = all[n].point;
+        table.rows.push_back(
+            {all[n].name, formatFixed(-p.x, 1), formatFixed(-p.y, 1), formatFixed(p.z, 1)});
+        if (uncertainty.empty()) continue;
+        table.rows.back().push_back(n < uncertainty.size() ? formatFixed(uncertainty[n], 0) : "");
     }
     report.tables.push_back(std::move(table));
     if (placed.landmarks) {

@@ -23,6 +23,7 @@ Landmarks onEquator() {
     landmarks.nasionMm = kCentre + Vec3{0, -kRadiusMm, 0};
     landmarks.leftEarMm = kCentre + Vec3{kRadiusMm, 0, 0};
     landmarks.rightEarMm = kCentre + Vec3{-kRadiusMm, 0, 0};
+    landmarks.inionMm = kCentre + Vec3{0, kRadiusMm, 0};
     return landmarks;
 }
 
@@ -75,6 +76,59 @@ TEST(StandardPositions, TakeTheInionThatIsGiven) {
         if (point.name == "Fpz") {
             EXPECT_LE(norm(at - kRadiusMm * direction(74, 0)), 0.2);
         }
+    }
+}
+
+TEST(StandardPositions, GuessTheInionAboveTheLineFromTheNasionBetweenTheEars) {
+    const TriangleMesh skin = icosphere(5, kCentre, kRadiusMm);
+    Landmarks landmarks = onEquator();
+    landmarks.inionMm.reset();
+    const Landmarks guessed = withInion(skin, landmarks);
+    EXPECT_LE(norm(*guessed.inionMm - kCentre - kRadiusMm * direction(77, 180)), 0.2);
+    EXPECT_EQ(guessed.inionUncertaintyMm, 20);
+    for (const NamedPoint& point : standardPositions(skin, landmarks, PositionSystem::TenTen)) {
+        if (point.name != "Iz") continue;
+        EXPECT_LE(norm(point.point - *guessed.inionMm), 0.2);
+    }
+    EXPECT_EQ(withInion(skin, onEquator()).inionUncertaintyMm, 0);
+}
+
+TEST(StandardPositions, AreAsUncertainAsTheirLandmarks) {
+    const TriangleMesh skin = icosphere(5, kCentre, kRadiusMm);
+    const auto places = [&](const Landmarks& l) {
+        std::vector<Vec3> fpzCzOz;
+        for (const NamedPoint& p : standardPositions(skin, l, PositionSystem::TenTwenty)) {
+            if (p.name == "Cz" || p.name == "Fpz" || p.name == "Oz") fpzCzOz.push_back(p.point);
+        }
+        return fpzCzOz;
+    };
+    EXPECT_EQ(carriedUncertaintyMm(skin, onEquator(), places), (std::vector<double>{0, 0, 0}));
+    Landmarks landmarks = onEquator();
+    landmarks.inionMm.reset();
+    landmarks = withInion(skin, landmarks);
+    // 20 mm up or down the skin from the inion: Cz moves by half of it, Oz by 9 tenths, Fpz by one
+    const double arcMm = kRadiusMm * std::atan(20 / kRadiusMm);
+    const std::vector<double> of = carriedUncertaintyMm(skin, landmarks, places);
+    EXPECT_NEAR(of[0], 0.1 * arcMm, 0.5);
+    EXPECT_NEAR(of[1], 0.5 * arcMm, 0.5);
+    EXPECT_NEAR(of[2], 0.9 * arcMm, 0.5);
+    // the guessed inion follows the nasion, and Cz with both; squares add up
+    landmarks.nasionUncertaintyMm = 20;
+    EXPECT_NEAR(carriedUncertaintyMm(skin, landmarks, places)[1], std::sqrt(1.25) * arcMm, 0.5);
+}
+
+TEST(SideOfName, FollowsTheNumber) {
+    for (const char* const name : {"Fp1", "FP1", "F7", "C3", "O1", "T3", "FT9", "CCP5h", "M1"}) {
+        EXPECT_EQ(sideOfName(name), HeadSide::Left) << name;
+    }
+    for (const char* const name : {"Fp2", "F10", "C4", "PO8", "AFp2", "T6", "O2h", "A2"}) {
+        EXPECT_EQ(sideOfName(name), HeadSide::Right) << name;
+    }
+    for (const char* const name : {"Cz", "FPZ", "Iz", "CPPz"}) {
+        EXPECT_EQ(sideOfName(name), HeadSide::Middle) << name;
+    }
+    for (const char* const name : {"E1", "B12", "C32", "EEG001", "1", "", "F", "C0", "ECG", "Fh"}) {
+        EXPECT_FALSE(sideOfName(name)) << name;
     }
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
@@ -13,10 +15,11 @@ namespace adaptiso {
 /// Nasion and the points before the ears, LPS mm.
 struct Landmarks {
     Vec3 nasionMm, leftEarMm, rightEarMm;
-    /// How far off they may be; 0 where they were given.
+    /// How far off they may be, on 19 of 20 heads; 0 where they were given.
     double nasionUncertaintyMm = 0, earUncertaintyMm = 0;
 
-    std::optional<Vec3> inionMm{};  ///< where given
+    std::optional<Vec3> inionMm{};  ///< where given, or guessed by withInion()
+    double inionUncertaintyMm = 0;
 
     bool areGuessed() const { return earUncertaintyMm > 0; }
 };
@@ -26,8 +29,8 @@ struct Landmarks {
 /// Nasion: in the middle plane, the deepest place of the profile between nose and forehead; where
 /// no nose stands out by 5 mm (a defaced scan, a face cut off), by proportion. Ears: by proportion
 /// to the inner skull (0.57 of its length behind its front, 0.69 of it below its top, as in
-/// FreeSurfer's average head), where the skin is there: tragus and lobes are not looked for, so 20
-/// mm is all that can be promised of them. \param innerSkull, skin  closed, LPS mm
+/// FreeSurfer's average head), where the skin is there: tragus and lobes are not looked for.
+/// Uncertainties are of heads turned by up to 10 degrees. \param innerSkull, skin  closed, LPS mm
 struct GuessedLandmarks {
     std::optional<Landmarks> landmarks;
     std::string reason;  ///< why there are none
@@ -52,11 +55,29 @@ enum class PositionSystem { TenTwenty, TenTen, TenFive };
 
 /// The positions of the 10-20 system and its extensions [Jurcak2007, Oostenveld2001] on a skin:
 /// shares of arcs in planes through landmarks. Cz halves both the arc from nasion to inion and that
-/// from ear to ear. An inion that is not given is taken where the line from the nasion between the
-/// ears leaves the head: of Colin's head 33 mm too low. \param skin  closed, LPS mm \throws
-/// InvalidInput  landmarks farther than 30 mm from the skin, or a plane that does not cut it
+/// from ear to ear. An inion that is not given is guessed by withInion(). \param skin  closed, LPS
+/// mm \throws InvalidInput  landmarks farther than 30 mm from the skin, or a plane that does not
+/// cut it
 std::vector<NamedPoint> standardPositions(const TriangleMesh& skin, const Landmarks& landmarks,
                                           PositionSystem system);
+
+/// The landmarks with an inion. One that is not given is guessed, to 20 mm: in the middle plane,
+/// seen from between the ears 13 degrees above the line from the nasion through there. \throws
+/// InvalidInput  as standardPositions()
+Landmarks withInion(const TriangleMesh& skin, Landmarks landmarks);
+
+/// How far each of positions(landmarks) may be off (mm) because landmarks are uncertain: each
+/// uncertain landmark moves over the skin by its uncertainty, in four directions (the inion up and
+/// down); the largest moves that each makes are added as squares. A move after which there are no
+/// positions does not count. \param positions  as many points each time; may throw InvalidInput
+std::vector<double> carriedUncertaintyMm(
+    const TriangleMesh& skin, const Landmarks& landmarks,
+    const std::function<std::vector<Vec3>(const Landmarks&)>& positions);
+
+/// The side of the head that a name of the 10-05 system or its older forms (T3, A1) belongs to, in
+/// whatever case: odd numbers left, even ones right. Empty for other names.
+enum class HeadSide { Left, Middle, Right };
+std::optional<HeadSide> sideOfName(std::string_view name);
 
 /// The rigid move that brings digitized head points to the skin, and how far off they then lie.
 struct SkinFit {

@@ -142,6 +142,8 @@ struct BemElectrodes {
     bool areComputed = false;  ///< by a system of positions, not from a file
     double meanMovedMm = 0, farthestMovedMm = 0;
     std::string farthestName;
+    /// How far each may be off because landmarks were guessed; empty: none were.
+    std::vector<double> uncertaintyMm{};
 
     /// Electrodes, and landmarks as they are.
     std::vector<NamedPoint> all() const;
