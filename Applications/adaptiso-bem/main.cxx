@@ -15,6 +15,7 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
+#include "adaptiso/MeshIO/PointFiles.h"
 
 namespace adaptiso::bem {
 namespace {
@@ -249,8 +250,8 @@ void addPoint(CLI::App& app, const std::string& name, std::optional<Vec3>& targe
 void declareElectrodes(CLI::App& app, BemOptions& options) {
     const OptionGroup group(app, kElectrodes);
     group.text("--electrodes", "FILE", options.electrodes,
-               "Electrodes, moved onto the skin and written back: BIDS _electrodes.tsv (with its "
-               "_coordsystem.json), ASA .elc, BESA .sfp, FIFF .fif");
+               "Electrodes, moved onto the skin and written back: " + pointExtensions() +
+                   " (of BIDS with the _coordsystem.json beside it)");
     group.choice<CoordinateFrame>(
         "--electrodes-in", options.model.electrodes.frame,
         {{"ras", CoordinateFrame::Ras},
@@ -269,7 +270,7 @@ void declareElectrodes(CLI::App& app, BemOptions& options) {
     addPoint(app, "--left-ear", options.leftEar, "Left preauricular point, the same");
     addPoint(app, "--right-ear", options.rightEar, "Right preauricular point, the same");
     addPoint(app, "--inion", options.inion,
-             "Inion, scanner RAS mm, for --montage (default: by nasion and ears)");
+             "Inion, scanner RAS mm, for --montage (default: guessed by nasion and ears)");
 }
 
 void declareSources(CLI::App& app, BemOptions& options) {

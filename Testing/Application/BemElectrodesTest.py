@@ -101,6 +101,13 @@ class Electrodes(BemTest):
         self.assert_on_skin(self.table())
         self.assertIn("cap.sfp: does not say its unit; taken for cm", done.stderr)
 
+    def test_directions_are_taken_for_a_sphere(self):
+        nasion, left, right = "1 0 .5 Nz\n", "2 -90 .5 LPA\n", "3 90 .5 RPA\n"
+        self.path("cap.loc").write_text(nasion + left + right + "4 0 0 Cz\n5 -90 .2048 C3\n6 0 .2048 Fz\n7 163.74 .5 O2\n")
+        done = self.bem(*self.labels(), "--electrodes", "cap.loc", *LANDMARKS, "-o", "model")
+        self.assert_on_skin(self.table())
+        self.assertIn("cap.loc: gives directions, not places; taken for a sphere of 95 mm", done.stderr)
+
     # exchanged ears turn "up" round, as a mirrored axis does; the ball's skin is as near below
     def test_a_cap_below_its_own_nasion_and_ears_is_refused(self):
         lines = [f"Nz 0 {SKIN} 0", f"LPA {SKIN} 0 0", f"RPA -{SKIN} 0 0"]
@@ -212,9 +219,9 @@ class Electrodes(BemTest):
         self.path("bad.elc").write_text("Positions\n1 2 3\nLabels\n")
         self.fails(BAD_INPUT, r"bad.elc: it has 1 positions and 0 labels", *labels, "--electrodes",
                    "bad.elc", "-o", "m")
-        self.path("cap.xyz").write_text("1 2 3 Cz\n")
-        self.fails(BAD_INPUT, r"cap.xyz: electrodes are not read from '.xyz' files", *labels,
-                   "--electrodes", "cap.xyz", "-o", "m")
+        self.path("cap.abc").write_text("1 2 3 Cz\n")
+        self.fails(BAD_INPUT, r"cap.abc: electrodes are not read from '.abc' files", *labels,
+                   "--electrodes", "cap.abc", "-o", "m")
         self.fails(USAGE, r"--nasion, --left-ear and --right-ear need each other", *labels, "--nasion",
                    "0,1,2", "-o", "m")
         self.fails(USAGE, r"--electrodes and --montage exclude", *labels, "--electrodes", "bad.elc",

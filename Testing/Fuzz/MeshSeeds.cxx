@@ -123,6 +123,16 @@ void addSurfaceLists(Seeds& seeds) {
     seeds.add("sfp", bytesOf(folder.path() / "a.sfp"));
     writeFiffPoints(points, folder.path() / "b.fif");
     seeds.add("dig", bytesOf(folder.path() / "b.fif"));
+    const char* const caps[] = {"1 0 .5 Fpz\n",
+                                "1 0 0 9 Cz\n",
+                                "EEG Fz 46 90\n%N a\n%F 1 2 3\n",
+                                "2\nnasion 9 0 0\n",
+                                "cardinal 2 0 9 0\n",
+                                "E1 37 -14 1 .7 .6 -.2 0\n",
+                                "Site Theta Phi\nFp1 -92 -72\n",
+                                "<E><Electrode><Name>a</Name><Theta>9</Theta><Phi>2</"
+                                "Phi><Radius>1</Radius></Electrode></E>"};
+    for (char n = 0; n < 8; ++n) seeds.add("caps", std::string(1, n) + caps[n]);
 }
 
 void addVtkFiles(Seeds& seeds) {

@@ -87,7 +87,8 @@ void warnOfPlaceless(const PointFile& file, const std::string& name, BemModel& m
                               name});
 }
 
-/// Heads have a radius of some 90 mm: that tells what unit numbers are in.
+/// Heads have a radius of some 90 mm: that says what unit numbers are in, or that they are on a
+/// sphere of radius 1.
 void guessUnit(PointFile& file, const std::string& name, BemModel& model) {
     if (file.saysUnit) return;
     Vec3 middle;
@@ -96,10 +97,21 @@ void guessUnit(PointFile& file, const std::string& name, BemModel& model) {
     }
     double radius = 0;
     for (const NamedPoint& p : file.points) radius = std::max(radius, norm(p.point - middle));
-    constexpr double kMostMetres = 0.5, kMostCentimetres = 30;
-    const double mm = radius <= kMostMetres ? 1000 : radius <= kMostCentimetres ? 10 : 1;
+    constexpr double kMostMetres = 0.5, kMostDirections = 2, kMostCentimetres = 30, kSphereMm = 95;
+    const bool areDirections = radius > kMostMetres && radius <= kMostDirections;
+    const double mm = radius <= kMostMetres        ? 1000
+                      : areDirections              ? kSphereMm
+                      : radius <= kMostCentimetres ? 10
+                                                   : 1;
     for (NamedPoint& p : file.points) p.point = mm * p.point;
     file.saysUnit = true;
+    if (areDirections) {
+        model.warnings.push_back({"guessed-unit",
+                                  "gives directions, not places; taken for a sphere of " +
+                                      formatShort(kSphereMm) + " mm",
+                                  name});
+        return;
+    }
     const std::string unit = mm == 1000 ? "m" : mm == 10 ? "cm" : "mm";
     model.warnings.push_back({"guessed-unit", "does not say its unit; taken for " + unit, name});
 }

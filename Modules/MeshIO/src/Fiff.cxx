@@ -171,6 +171,22 @@ DigitizedPoint toPoint(const Tag& tag) {
     return point;
 }
 
+Channel toChannel(const Tag& tag) {
+    // scan and logical number, kind, range, calibration, coil, place and axes, unit and its power,
+    // name
+    constexpr std::size_t kBytes = 96, kKindAt = 8, kPlaceAt = 24, kNameAt = 80;
+    if (tag.data.size() < kBytes)
+        damaged("a channel has " + std::to_string(tag.data.size()) + " bytes, must have 96");
+    Channel channel{loadAs<std::int32_t>(tag.data.data() + kKindAt, kBig), {}, {}};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        channel.metres[static_cast<int>(axis)] =
+            loadAs<float>(tag.data.data() + kPlaceAt + 4 * axis, kBig);
+    }
+    channel.name = tag.data.substr(kNameAt, kBytes - kNameAt);
+    channel.name = channel.name.substr(0, channel.name.find('\0'));
+    return channel;
+}
+
 Writer::Writer(ByteSink& sink) : sink_(sink) {
     header(kFileId, kIdStruct, kIdBytes);
     sink_.bigEndian(kVersion);

@@ -17,7 +17,8 @@ namespace adaptiso::meshio::fiff {
 // kinds of tags
 inline constexpr std::int32_t kFileId = 100, kDirectoryPointer = 101, kBlockStart = 104,
                               kBlockEnd = 105, kFreeList = 106, kNop = 108;
-inline constexpr std::int32_t kDigPoint = 213, kCoordTrans = 222, kDigString = 234;
+inline constexpr std::int32_t kChannelInfo = 203, kDigPoint = 213, kCoordTrans = 222,
+                              kDigString = 234;
 inline constexpr std::int32_t kSurfaceId = 3101, kNodeCount = 3103, kTriangleCount = 3104,
                               kNodes = 3105, kTriangles = 3106, kNormals = 3107,
                               kBemCoordFrame = 3112, kSigma = 3113, kMneCoordFrame = 3506,
@@ -83,6 +84,14 @@ struct DigitizedPoint {
     Vec3 metres;
 };
 DigitizedPoint toPoint(const Tag& tag);
+
+/// A channel of measured data.
+struct Channel {
+    std::int32_t kind = 0;  ///< 2 EEG
+    Vec3 metres;            ///< of its electrode
+    std::string_view name;
+};
+Channel toChannel(const Tag& tag);
 
 /// Writes a file tag by tag. No date, machine or user is in it.
 class Writer {

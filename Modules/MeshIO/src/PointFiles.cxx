@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -11,6 +10,7 @@
 #include "Bytes.h"
 #include "Counts.h"
 #include "Fiff.h"
+#include "PointCodec.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/ParseJson.h"
@@ -25,51 +25,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr std::size_t kMostPoints = 100'000;
-constexpr double kMetreMm = 1000;
-
-PointKind kindOf(std::string_view name) {
-    constexpr std::array kNasion{"nas", "nasion", "nz", "fidnz", "fidn"};
-    constexpr std::array kLeft{"lpa", "fidt9", "fidl", "leftear"};
-    constexpr std::array kRight{"rpa", "fidt10", "fidr", "rightear"};
-    std::string plain;
-    for (const char c : lowerCase(name)) {
-        if (c != '_' && c != ' ' && c != '-') plain += c;
-    }
-    const auto isIn = [&](const auto& names) {
-        return std::find(names.begin(), names.end(), plain) != names.end();
-    };
-    return isIn(kNasion)  ? PointKind::Nasion
-           : isIn(kLeft)  ? PointKind::LeftEar
-           : isIn(kRight) ? PointKind::RightEar
-                          : PointKind::Electrode;
-}
-
-void requireFinite(std::string_view name, const Vec3& point) {
-    if (!std::isfinite(squaredNorm(point))) {
-        damaged("the place of " + printable(name) + " is not finite");
-    }
-}
-
-/// A point without a place (NaN) is one of file.placeless.
-void add(PointFile& file, std::string_view name, const Vec3& point, PointKind kind) {
-    if (file.points.size() + file.placeless.size() == kMostPoints) {
-        damaged("it holds more than 100,000 points");
-    }
-    const bool isPlain = std::all_of(name.begin(), name.end(), [](char c) {
-        return static_cast<unsigned char>(c) >= ' ' && c != '\x7f';
-    });
-    if (name.empty() || name.size() > 100 || !isPlain) {
-        unsupported("a point has the name " + printable(name),
-                    "give each a name of 1 to 100 characters");
-    }
-    if (std::isnan(point.x) || std::isnan(point.y) || std::isnan(point.z)) {
-        file.placeless.push_back(withoutControls(name));
-        return;
-    }
-    requireFinite(name, point);
-    file.points.push_back({withoutControls(name), kind, point});
-}
+constexpr std::string_view kAxes = "xyz";
 
 /// Names stand for channels, so each is to be there once. Head points are numbered only.
 void requireOneEach(const PointFile& file) {
@@ -83,32 +39,6 @@ void requireOneEach(const PointFile& file) {
         if (point.kind != PointKind::Other) require(point.name);
     }
     for (const std::string& name : file.placeless) require(name);
-}
-
-/// "line 7: the coordinate x of 'Cz' is 'left', must be a number"
-[[noreturn]] void refuseCoordinate(std::string_view cell, int axis, std::string_view name,
-                                   std::int64_t line) {
-    const std::string met = linePlace(line) + "the coordinate " + "xyz"[axis] + " of " +
-                            printable(name) + " is " + printable(cell);
-    const bool hasComma = cell.find(',') != std::string_view::npos;
-    unsupported(met + (hasComma ? ", with a comma" : ""),
-                hasComma ? "save it with decimal points" : "it must be a number, or n/a");
-}
-
-double unitMm(std::string_view word) {
-    const std::string unit = lowerCase(word);
-    if (unit == "mm") return 1;
-    if (unit == "cm") return 10;
-    if (unit == "m") return kMetreMm;
-    unsupported("its unit is " + printable(word), "it must be mm, cm or m");
-}
-
-void scale(PointFile& file, double mm) {
-    file.saysUnit = true;
-    for (NamedPoint& point : file.points) {
-        point.point = mm * point.point;
-        requireFinite(point.name, point.point);
-    }
 }
 
 /// Frames that BIDS names; most others follow from landmarks.
@@ -154,7 +84,7 @@ void applyCoordinateSystem(const std::string& text, PointFile& file) {
     file.frameName = textOf(json, "EEGCoordinateSystem");
     file.frame = bidsFrame(file.frameName);
     const std::string unit = textOf(json, "EEGCoordinateUnits");
-    if (!unit.empty() && lowerCase(unit) != "n/a") scale(file, unitMm(unit));
+    if (!unit.empty() && lowerCase(unit) != "n/a") scalePoints(file, unitMm(unit));
     const std::string own = textOf(json, "AnatomicalLandmarkCoordinateSystem");
     if (!own.empty() && own != file.frameName) return;  // of another space
     const auto landmarks = json.find("AnatomicalLandmarkCoordinates");
@@ -164,73 +94,8 @@ void applyCoordinateSystem(const std::string& text, PointFile& file) {
     const double mm = file.saysUnit && !used.empty() ? unitMm(used) : 1;
     for (const auto& [name, value] : landmarks->items()) {
         const PointKind kind = kindOf(name);
-        if (kind != PointKind::Electrode) add(file, name, mm * vectorOf(value), kind);
+        if (kind != PointKind::Electrode) addPoint(file, name, mm * vectorOf(value), kind);
     }
-}
-
-/// Columns that a header names, in whatever case.
-std::array<std::size_t, 4> columnsOf(const std::vector<std::string>& header) {
-    constexpr std::array<std::string_view, 4> kNames{"name", "x", "y", "z"};
-    std::array<std::size_t, 4> columns{};
-    for (std::size_t n = 0; n < 4; ++n) {
-        const auto isIt = [&](const std::string& cell) { return lowerCase(cell) == kNames[n]; };
-        const auto found = std::ranges::find_if(header, isIt);
-        if (found == header.end()) {
-            unsupported("its first line names no column '" + std::string(kNames[n]) + "'",
-                        "a table of electrodes begins with the columns name, x, y, z");
-        }
-        if (std::any_of(found + 1, header.end(), isIt)) {
-            unsupported("its first line names the column '" + std::string(kNames[n]) + "' twice",
-                        "rename or remove one of them");
-        }
-        columns[n] = static_cast<std::size_t>(found - header.begin());
-    }
-    return columns;
-}
-
-/// Spreadsheets put commas or semicolons for BIDS's tabs.
-PointFile decodeTsv(std::string_view bytes) {
-    TextLines lines(bytes);
-    PointFile file;
-    file.format = "BIDS electrodes";
-    const std::string_view first = lines.next().value_or("");
-    const char separator = separatorOf(first);
-    const auto cells = [&](std::string_view line) {
-        const auto found = cellsOf(line, separator);
-        if (!found) unsupported(linePlace(lines.number()) + "a quote is not closed", "close it");
-        return *found;
-    };
-    const std::vector<std::string> header = cells(first);
-    const std::array<std::size_t, 4> columns = columnsOf(header);
-    const std::size_t fewest = std::ranges::max(columns) + 1;
-    bool hasComma = false, hasPoint = false;
-    while (const auto line = lines.next()) {
-        const std::vector<std::string> row = cells(*line);
-        if (std::ranges::all_of(row, &std::string::empty)) continue;
-        const auto isFilled = [](const std::string& cell) { return !cell.empty(); };
-        const auto surplus = row.begin() + std::min(std::ssize(row), std::ssize(header));
-        if (row.size() < fewest || std::any_of(surplus, row.end(), isFilled)) {
-            unsupported(linePlace(lines.number()) + "a row has " + std::to_string(row.size()) +
-                            " cells, the first line " + std::to_string(header.size()),
-                        "give each row the cells that the first line names");
-        }
-        const std::string& name = row[columns[0]];
-        Vec3 point;
-        for (int a = 0; a < 3; ++a) {
-            const std::string& cell = row[columns[static_cast<std::size_t>(a) + 1]];
-            const auto value = cellNumber(cell, separator);
-            if (!value) refuseCoordinate(cell, a, name, lines.number());
-            hasComma = hasComma || cell.find(',') != cell.npos;
-            hasPoint = hasPoint || cell.find('.') != cell.npos;
-            point[a] = *value;
-        }
-        add(file, name, point, kindOf(name));
-    }
-    if (hasComma && hasPoint) {
-        unsupported("its coordinates have decimal commas and decimal points",
-                    "save it with decimal points alone");
-    }
-    return file;
 }
 
 /// Three words and no more; all of them "n/a" or the like where a point has no place.
@@ -242,9 +107,7 @@ Vec3 placeOf(ByteSource& words, std::string_view name, std::int64_t line) {
             damaged(linePlace(line) + "a point has " + std::to_string(a) +
                     " coordinates, must have 3");
         }
-        const auto value = cellNumber(word, ',');
-        if (!value) refuseCoordinate(word, a, name, line);
-        point[a] = *value;
+        point[a] = coordinate(word, kAxes.substr(static_cast<std::size_t>(a), 1), name, line);
     }
     if (const std::string_view more = words.word(); !more.empty() && more.front() != '#') {
         unsupported(linePlace(line) + "behind the three coordinates of " + printable(name) +
@@ -341,40 +204,13 @@ PointFile decodeElc(std::string_view bytes) {
                             ", its label is " + printable(labels[n]),
                         "give names and labels in one order");
         }
-        add(file, names[n], points[n], kindOf(names[n]));
+        addPoint(file, names[n], points[n], kindOf(names[n]));
     }
     const double shapeUnits = mm > 0 && shapeMm > 0 ? shapeMm / mm : 1;
     for (std::size_t n = 0; n < shape.size(); ++n) {
-        add(file, "extra" + std::to_string(n + 1), shapeUnits * shape[n], PointKind::Other);
+        addPoint(file, "extra" + std::to_string(n + 1), shapeUnits * shape[n], PointKind::Other);
     }
-    if (mm > 0) scale(file, mm);
-    return file;
-}
-
-/// What stands before the first tab where three words follow it: then blanks are part of the name.
-/// Else the first word.
-std::string_view sfpName(std::string_view line) {
-    const std::size_t tab = line.find('\t');
-    if (tab != line.npos) {
-        ByteSource words(line.substr(tab));
-        std::size_t count = 0;
-        while (!words.word().empty()) ++count;
-        if (count == 3) return trimmed(line.substr(0, tab));
-    }
-    return ByteSource(line).word();
-}
-
-PointFile decodeSfp(std::string_view bytes) {
-    TextLines lines(bytes);
-    PointFile file;
-    file.format = "BESA .sfp";
-    while (const auto whole = lines.next()) {
-        const std::string_view line = trimmed(*whole);
-        if (line.empty() || line.front() == '#') continue;
-        const std::string_view name = sfpName(line);
-        ByteSource words(line.substr(name.size()));
-        add(file, name, placeOf(words, name, lines.number()), kindOf(name));
-    }
+    if (mm > 0) scalePoints(file, mm);
     return file;
 }
 
@@ -384,6 +220,20 @@ std::string withoutColons(std::string name) {
         name.replace(at, 1, "{COLON}");
     }
     return name;
+}
+
+/// Channels of raw data lie where their electrode does.
+std::optional<std::string> channelAt(const fiff::Content& content, const Vec3& metres) {
+    for (const fiff::Tag& tag : content.tags) {
+        if (tag.kind != fiff::kChannelInfo) continue;
+        const fiff::Channel channel = fiff::toChannel(tag);
+        constexpr std::int32_t kEeg = 2;
+        constexpr double kSameMetres = 1e-6;
+        if (channel.kind == kEeg && norm(channel.metres - metres) < kSameMetres) {
+            return toUtf8(channel.name);
+        }
+    }
+    return std::nullopt;
 }
 
 /// The points of the first digitizer block.
@@ -420,30 +270,56 @@ PointFile decodeFiff(std::string_view bytes) {
         if (point.kind == kCardinal && point.number >= 1 && point.number <= 3) {
             constexpr std::array<const char*, 3> kNames{"LPA", "Nasion", "RPA"};
             const char* const name = kNames[static_cast<std::size_t>(point.number - 1)];
-            add(file, name, point.metres, kindOf(name));
+            addPoint(file, name, point.metres, kindOf(name));
         } else if (point.kind == kElectrode) {
-            const std::string name = electrodes < names.size() && !names[electrodes].empty()
-                                         ? names[electrodes]
-                                         : "EEG" + digits;
+            const std::string name =
+                electrodes < names.size() && !names[electrodes].empty()
+                    ? names[electrodes]
+                    : channelAt(content, point.metres).value_or("EEG" + digits);
             ++electrodes;
-            add(file, name, point.metres, PointKind::Electrode);
+            addPoint(file, name, point.metres, PointKind::Electrode);
         } else {
-            add(file, "extra" + digits, point.metres, PointKind::Other);
+            addPoint(file, "extra" + digits, point.metres, PointKind::Other);
         }
     }
-    scale(file, kMetreMm);
+    scalePoints(file, kMetreMm);
     return file;
 }
 
+struct PointFormat {
+    std::string_view extension;
+    PointFile (*decode)(std::string_view);
+    bool isText = true;
+};
+
+constexpr PointFormat kFormats[] = {{".tsv", decodePointTable},
+                                    {".csv", decodePointTable},
+                                    {".ced", decodePointTable},
+                                    {".elc", decodeElc},
+                                    {".sfp", decodeSfp},
+                                    {".fif", decodeFiff, false},
+                                    {".loc", decodeLoc},
+                                    {".locs", decodeLoc},
+                                    {".eloc", decodeLoc},
+                                    {".xyz", decodeXyz},
+                                    {".elp", decodeElp},
+                                    {".hsp", decodeElp},
+                                    {".pos", decodePos},
+                                    {".hpts", decodeHpts},
+                                    {".csd", decodeCsd},
+                                    {".txt", decodePointText},
+                                    {".bvef", decodeBrainVision, false},
+                                    {".bvct", decodeBrainVision, false}};
+
 PointFile decoded(std::string_view bytes, std::string_view extension) {
-    const std::string fault = extension == ".fif" ? "" : faultOfText(bytes);
-    if (!fault.empty()) throw FileError(fault);
-    if (extension == ".tsv") return decodeTsv(toUtf8(bytes));
-    if (extension == ".elc") return decodeElc(toUtf8(bytes));
-    if (extension == ".sfp") return decodeSfp(toUtf8(bytes));
-    if (extension == ".fif") return decodeFiff(bytes);
-    unsupported("electrodes are not read from '" + std::string(extension) + "' files",
-                "give _electrodes.tsv, .elc, .sfp or .fif");
+    const auto format = std::ranges::find(kFormats, extension, &PointFormat::extension);
+    if (format == std::end(kFormats)) {
+        unsupported("electrodes are not read from '" + std::string(extension) + "' files",
+                    "give " + pointExtensions());
+    }
+    if (!format->isText) return format->decode(bytes);
+    if (const std::string fault = faultOfText(bytes); !fault.empty()) throw FileError(fault);
+    return format->decode(toUtf8(bytes));
 }
 
 /// "sub-1_electrodes.tsv" -> "sub-1_coordsystem.json"; BIDS may leave out what is the same for all.
@@ -494,6 +370,14 @@ std::string coordinateSystemText(std::span<const NamedPoint> points, CoordinateF
 }
 
 }  // namespace
+
+std::string pointExtensions() {
+    std::string list;
+    for (const PointFormat& format : kFormats) {
+        list.append(list.empty() ? "" : ", ").append(format.extension);
+    }
+    return list;
+}
 
 PointFile decodePoints(std::string_view bytes, std::string_view extension, std::string_view name,
                        const std::optional<std::string>& coordinateSystem) {

@@ -362,8 +362,8 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         Of brain, skull and scalp, S/m; with four layers of brain, CSF, skull and scalp (default of
         CSF: 1.79).
     electrodes : path or mapping of str to (float, float, float), optional
-        Electrodes, moved onto the skin: a file (BIDS, ASA .elc, BESA .sfp, FIFF), or places by
-        name, scanner RAS mm. Those without a place (None, NaN) are left out with a warning.
+        Electrodes, moved onto the skin: a file (BIDS, FIFF and those of other toolboxes), or
+        places by name, scanner RAS mm. Those without a place (None, NaN) are left out with a warning.
     electrodes_in : {"ras", "lps", "tkras"}, optional
         The frame of the file. Default: what it says; else by its nasion and ears; else
         it is refused.

@@ -33,24 +33,34 @@ struct PointFile {
     std::vector<Warning> warnings;
 };
 
-/// Reads electrodes, landmarks and head points:
-///   _electrodes.tsv  of BIDS: columns name, x, y, z; unit, frame and landmarks from the
-///                    _coordsystem.json beside it: EEGCoordinateSystem, EEGCoordinateUnits,
-///                    AnatomicalLandmarkCoordinates (NAS, LPA, RPA)
-///   .elc             of ASA: UnitPosition, Positions, Labels
+/// Reads electrodes, landmarks and head points, by the file's ending:
+///   .tsv .csv .ced   tables: columns name (label, labels, site, id) and x, y, z, or angles theta
+///                    and phi, or EEGLAB's theta and radius. Of BIDS unit, frame and landmarks come
+///                    from the _coordsystem.json beside it: EEGCoordinateSystem,
+///                    EEGCoordinateUnits, AnatomicalLandmarkCoordinates (NAS, LPA, RPA)
+///   .elc             of ASA and EETrak: UnitPosition, Positions, Labels
 ///   .sfp             of BESA and EGI: name x y z, without a unit
-///   .fif             FIFF's digitizer block: metres, in head or MRI coordinates
+///   .fif             FIFF's digitizer block: metres, in head or MRI coordinates; names from its
+///                    list of names, or of the channels that lie there
+///   .loc .locs .eloc of EEGLAB: number, theta, radius, name;  .xyz  number, x, y, z, name
+///   .elp             of Polhemus (%F, %N), or BESA's angles;  .hsp  of Polhemus
+///   .pos             of Polhemus and CTF;  .hpts  of MNE;  .csd  of the CSD Toolbox
+///   .txt             a table, Polhemus FastSCAN's places, or name x y z
+///   .bvef .bvct      of BrainVision: angles, or CapTrak's places
 /// A point with a coordinate that is "n/a", NaN or empty has no place. Numbers of a .tsv may have
 /// decimal commas. Landmarks are recognised by name (NAS, Nz, fidNz, LPA, fidT9, ...), upper case
-/// or lower.
+/// or lower. Angles give directions of unit length: x to the right, y to the nasion.
 /// Files are taken for hostile: at most 100,000 points, finite, each name once.
 /// \throws FileError  "<file>: what is wrong; what to do"
 PointFile readPoints(const std::filesystem::path& path);
 
 /// The same from bytes in memory; for BIDS with the bytes of _coordsystem.json, if any.
-/// \param extension  ".tsv", ".elc", ".sfp" or ".fif"
+/// \param extension  ".tsv", ".elc", ...
 PointFile decodePoints(std::string_view bytes, std::string_view extension, std::string_view name,
                        const std::optional<std::string>& coordinateSystem = std::nullopt);
+
+/// The endings of these files, for messages: ".tsv, .csv, ...".
+std::string pointExtensions();
 
 /// Writes points (mm, in `frame`) in all of these formats but for the folder's names:
 /// electrodes.tsv and coordsystem.json hold electrodes and landmarks, .elc electrodes and landmarks
