@@ -51,6 +51,18 @@ class Surfaces(BemTest):
             for p, q in zip(points, expected):
                 self.assertLess(math.dist(p, q), 1e-6)  # nine digits
 
+    def test_what_no_head_has_is_no_model(self):
+        """A third of adults' least inner skull (317 cm3) is a ball of 42.3 mm; three times the thickest scalp is 45 mm."""
+        names = self.write(*(globe(r) for r in (42, 66, 72)), globe(60), globe(144))
+        for inner, skin, said in ((0, 2, r"inner_skull: 30\d cm3; adults have 950 to 1900 cm3; .*no head has such a volume of the inner skull"),
+                                  (3, 4, r"outer_skull in outer_skin: median 7\d\.\d mm .*no head has such a thickness of the scalp")):
+            done = self.run_bem("--surfaces", names[inner], names[1], names[skin], "--input-coordinates", "ras", "--dry-run")
+            self.assertEqual(done.returncode, CHECK_FAILED, done.stderr)
+            self.assertRegex(done.stderr, r"\A.*no model: " + said)  # alone: what is unusual besides is beside the point
+        for radii in ((43.5, 66, 72), (60, 66, 108)):  # unusual alone
+            done = self.bem("--surfaces", *self.write(*(globe(r) for r in radii)), "-o", f"model{radii[0]}")
+            self.assertRegex(done.stderr, "outer_skull in outer_skin: median 4|inner_skull in outer_skull: median 2")
+
     def test_inside_out_ones_are_turned(self):
         points, triangles = globe(60)
         names = self.write((points, [(a, c, b) for a, b, c in triangles]), globe(66), globe(72))

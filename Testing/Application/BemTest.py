@@ -537,7 +537,7 @@ class Report(BemTest):
     def test_keys_are_the_documented_ones(self):
         skin = RADII[-1]
         self.bem(*self.labels(), "--montage", "10-20", "--nasion", f"0,{skin},0",
-                 f"--left-ear=-{skin},0,0", "--right-ear", f"{skin},0,0", "--source-grid", 10, "-o", "model")
+                 f"--left-ear=-{skin},0,0", "--right-ear", f"{skin},0,0", f"--inion=0,-{skin},0", "--source-grid", 10, "-o", "model")
         section = README.read_text().split("## The report")[1]
         documented = set()
         for row in re.findall(r"^\| (`.*?`) \|", section, re.MULTILINE):

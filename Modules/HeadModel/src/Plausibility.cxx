@@ -201,7 +201,7 @@ public:
 private:
     HeadNote& add(std::string_view key, std::string_view name, std::size_t surface, bool isNoted,
                   std::string finding) {
-        notes_.push_back({key, name, surface, {}, isNoted, std::move(finding)});
+        notes_.push_back({key, name, surface, {}, isNoted, false, std::move(finding)});
         return notes_.back();
     }
 
@@ -407,10 +407,16 @@ private:
     void judgeVolume() {
         const double cm3 = *surfaces_[innerSkull_].volumeMm3 / 1000;
         const bool isNoted = cm3 < usual_.leastInnerSkullCm3 || cm3 > usual_.mostInnerSkullCm3;
-        add("innerSkullVolume", "volume of the inner skull", innerSkull_, isNoted,
+        HeadNote& note = add(
+            "innerSkullVolume", "volume of the inner skull", innerSkull_, isNoted,
             fixed(cm3, 0) + " cm3" + (isNoted ? "; " : ", ") + usually(isNoted) +
                 fixed(usual_.leastInnerSkullCm3, 0) + " to " + fixed(usual_.mostInnerSkullCm3, 0) +
                 " cm3" + (isNoted && cm3 < usual_.leastInnerSkullCm3 ? adviceForChildren() : ""));
+        note.isImpossible = cm3 < UsualHead::kLeastVolumeShare * usual_.leastInnerSkullCm3 ||
+                            cm3 > UsualHead::kMostVolumeShare * usual_.mostInnerSkullCm3;
+        if (note.isImpossible) {
+            note.pointsMm.push_back(surfaces_[innerSkull_].box.middle());
+        }
     }
 
     /// The vault is convex. The base is not: its fossae and the foramen magnum are left out.
@@ -510,6 +516,7 @@ private:
                              : add("scalpThickness", "thickness of the scalp", n, isNoted, finding);
         note.next = n + 1;
         note.warning = "thickness-unusual";
+        note.isImpossible = median > UsualHead::kMostThicknessShare * most;
         if (isNoted) {
             const bool looksAtThin = isThin || (isUneven && !isThick && !isSomewhereThick);
             note.pointsMm.push_back(

@@ -124,19 +124,26 @@ void assessPlausibility(BemModel& model, const BemHooks& hooks) {
         options.image = model.image;
         options.usual = UsualHead(model.options.boundaries.ageYears);
         const AffineTransform toRas = lpsToFrame(CoordinateFrame::Ras, {});
+        std::vector<Warning> warnings;
         for (HeadNote& note : judgePlausibility(model.meshes, options)) {
             std::string subject = bemSurfaceName(note.surface, model.meshes.size());
             if (note.next) subject += " in " + bemSurfaceName(*note.next, model.meshes.size());
             ReportedNote reported{std::move(note), std::move(subject), CoordinateFrame::Ras, {}};
             reported.isWarned = reported.note.isNoted && !reported.note.warning.empty();
             for (const Vec3& p : reported.note.pointsMm) reported.placesMm.push_back(toRas(p));
-            if (reported.isWarned) {
-                model.warnings.push_back({std::string(reported.note.warning),
-                                          reported.subject + ": " + reported.note.finding +
-                                              ", at " + rasText(reported.note.pointsMm.front())});
+            const std::string finding = reported.subject + ": " + reported.note.finding;
+            if (reported.note.isImpossible) {
+                model.findings.push_back({finding + "; no head has such a " +
+                                              std::string(reported.note.name) +
+                                              ": are the surfaces, or the voxels' size, right?",
+                                          reported.note.pointsMm.front()});
+            } else if (reported.isWarned) {
+                warnings.push_back({std::string(reported.note.warning),
+                                    finding + ", at " + rasText(reported.note.pointsMm.front())});
             }
             model.plausibility.push_back(std::move(reported));
         }
+        if (model.hasModel()) addWarnings(model.warnings, warnings, "");  // else beside the point
     });
 }
 

@@ -13,7 +13,7 @@
 namespace adaptiso {
 
 /// Usual ranges of heads of an age and of meshes for boundary elements. Values outside may be
-/// right: they are noted, and nothing fails.
+/// right: they are noted, and nothing fails but what no head has.
 struct UsualHead {
     static constexpr double kAdultYears = 18;
 
@@ -46,6 +46,11 @@ struct UsualHead {
     double mostSkullAnywhereMm() const { return 15.0 / 12 * mostSkullMm; }
     static constexpr double kMostSkullRatio = 4;
 
+    /// No head of the age: an inner skull of a third of the least volume or twice the most, a
+    /// median skull or scalp three times as thick as the thickest.
+    static constexpr double kLeastVolumeShare = 1.0 / 3, kMostVolumeShare = 2;
+    static constexpr double kMostThicknessShare = 3;
+
     bool isAdult() const { return ageYears >= kAdultYears; }
     /// Too thin for 1 mm voxels to show it apart from what lies beside it.
     bool isSkullThin() const { return skullMm < 4; }
@@ -71,6 +76,7 @@ struct HeadNote {
     std::size_t surface = 0;          ///< number of the surface
     std::optional<std::size_t> next;  ///< and of its neighbour, where it is about both
     bool isNoted = false;             ///< unusual: worth a look
+    bool isImpossible = false;        ///< no head is so: there is no model
     std::string finding;              ///< the value measured, and its usual range
     std::vector<Vec3> pointsMm{};     ///< where to look; in the surfaces' frame
     /// Code of the warning where what is noted makes a head model doubtful; else empty.
