@@ -86,6 +86,27 @@ std::vector<fs::path> subjectPaths(const BemOptions& options) {
     return paths;
 }
 
+/// SUBJECT/bem, which recon-all does not make. One that stays empty goes again.
+class SubjectFolder {
+public:
+    explicit SubjectFolder(const BemOptions& options) {
+        if (options.subject.empty() || options.isDryRun) return;
+        const fs::path subject = options.subjectsDir / options.subject, bem = subject / "bem";
+        std::error_code error;
+        if (!fs::is_directory(subject, error) || fs::exists(fs::symlink_status(bem, error))) return;
+        if (fs::create_directory(bem, error)) made_ = bem;
+    }
+    SubjectFolder(const SubjectFolder&) = delete;
+    SubjectFolder& operator=(const SubjectFolder&) = delete;
+    ~SubjectFolder() {
+        std::error_code error;
+        if (!made_.empty()) fs::remove(made_, error);
+    }
+
+private:
+    fs::path made_;
+};
+
 void checkSubject(const BemOptions& options) {
     for (const fs::path& path : subjectPaths(options)) {
         const fs::path subject = path.parent_path().parent_path();
@@ -256,6 +277,7 @@ int runBem(const BemOptions& options) {
     BemRun run(options);
     run.model.options = options.model;
     run.model.source = sourceOf(options);
+    const SubjectFolder subjectFolder(options);
     checkOutputs(options);
     requireMesher(options.tetrahedra);
     readElectrodes(run);

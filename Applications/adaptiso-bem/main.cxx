@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
@@ -216,9 +217,13 @@ void declareOutput(CLI::App& app, BemOptions& options) {
                 "report.json alone");
     output.flag("--force", options.mayReplace,
                 "Replace a folder that this program made, and the subject's surfaces");
-    output.text("--subjects-dir", "DIR", options.subjectsDir,
-                "FreeSurfer's SUBJECTS_DIR: put the .surf files into SUBJECT/bem as well");
-    output.text("--subject", "NAME", options.subject, "The subject's folder in --subjects-dir");
+    output.text("-d,--subjects-dir", "DIR", options.subjectsDir,
+                "FreeSurfer's SUBJECTS_DIR (default: of the environment), where --subject is");
+    output.text(
+        "-s,--subject", "NAME", options.subject,
+        "A subject of FreeSurfer: the .surf files are put into its folder bem as well. Without an "
+        "image --t1 is its mri/T1.mgz, --brain-mask its mri/brainmask.mgz; -o is "
+        "SUBJECT/adaptiso-bem by default");
     output.choice<OpenMeegUnit>(
         "--units", options.files.unit,
         {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}},
@@ -301,6 +306,36 @@ void declareToolboxes(CLI::App& app, BemOptions& options) {
     addFlag("--vtp", files.writesVtp, "Viewers: .vtp");
 }
 
+/// A subject of FreeSurfer stands for its images, where no others are given, and for the output.
+void takeSubject(BemOptions& options) {
+    if (options.subject.empty() && options.subjectsDir.empty()) return;
+    if (const char* const folder = std::getenv("SUBJECTS_DIR");
+        folder != nullptr && options.subjectsDir.empty()) {
+        options.subjectsDir = folder;
+    }
+    if (options.subject.empty() || options.subjectsDir.empty()) {
+        throw UsageError(
+            "--subjects-dir and --subject need each other; SUBJECTS_DIR in the environment may "
+            "stand for the first");
+    }
+    if (options.subject.find('/') != std::string::npos || options.subject == ".." ||
+        options.subject == ".") {
+        throw UsageError("--subject " + options.subject + ": must be the name of a folder");
+    }
+    const std::filesystem::path folder = options.subjectsDir / options.subject;
+    if (options.output.empty()) options.output = folder / "adaptiso-bem";
+    if (!options.t1.empty() || !options.labels.empty() || !options.probabilities.empty() ||
+        !options.ct.empty() || !options.surfaces.empty()) {
+        return;
+    }
+    options.t1 = folder / "mri" / "T1.mgz";
+    const std::filesystem::path mask = folder / "mri" / "brainmask.mgz";
+    std::error_code error;
+    if (options.brainMask.empty() && options.aseg.empty() && std::filesystem::exists(mask, error)) {
+        options.brainMask = mask;
+    }
+}
+
 /// Checks options against each other: those of the model by bemFault(), then the program's own.
 void checkCombinations(const CLI::App& app, const BemOptions& options) {
     const auto require = [](bool isGood, const std::string& message) {
@@ -309,6 +344,8 @@ void checkCombinations(const CLI::App& app, const BemOptions& options) {
     BemRequest request{
         {}, options.tissues, options.surfaces.size(), options.sources.size(), options.preset};
     for (const std::string& name : givenOptions(app)) request.given.insert(name.substr(2));
+    if (!options.t1.empty()) request.given.insert("t1");  // of --subject
+    if (!options.brainMask.empty()) request.given.insert("brain-mask");
     const std::string fault =
         bemFault(options.model, request, [](const std::string& name) { return "--" + name; });
     require(fault.empty(), fault);
@@ -324,17 +361,12 @@ void checkCombinations(const CLI::App& app, const BemOptions& options) {
     requireFolderName(
         "--output", options.output,
         "give a folder, -o model; it gets .surf, and .gii and .vtp by --gifti, --vtp");
-    require(options.subject.empty() == options.subjectsDir.empty(),
-            "--subjects-dir and --subject need each other");
-    require(options.subject.find('/') == std::string::npos && options.subject != ".." &&
-                options.subject != ".",
-            "--subject " + options.subject + ": must be the name of a folder");
 }
 
 constexpr const char* kFooter = R"(Examples:
   adaptiso-bem --t1 T1.nii.gz --brain-mask brain.nii.gz -o model
       FreeSurfer and OpenMEEG files, README.md and report.json in the folder model
-  adaptiso-bem --t1 T1.mgz --subjects-dir subjects --subject anna -o model
+  adaptiso-bem -s anna -d subjects
   adaptiso-bem --t1 T1.mgz --aseg aseg.mgz --pial lh.pial rh.pial --layers 4 -o model
   adaptiso-bem --labels final_tissues.nii.gz --preset charm --vertices 642 -o model
   adaptiso-bem --probabilities c1.nii c2.nii c3.nii c4.nii c5.nii -o model
@@ -376,6 +408,7 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
     declareCommonOptions(app, options.common, "of the model only the report is then written");
     afterParsing(app, [&app, &options] {
         if (options.surfaces.size() == 1) options.surfaces = surfacePaths(options.surfaces.front());
+        takeSubject(options);
         checkCombinations(app, options);
         options.model.wantsHeadShape = options.files.writesFif;
         options.model.electrodes.wantsLandmarks = options.files.writesBesa;

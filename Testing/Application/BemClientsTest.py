@@ -515,11 +515,16 @@ class Toolboxes(SharedFolderTest):
 class RealHead(SharedFolderTest):
     def make_masked(self):
         if not self.path("masked").exists():
-            self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "ch2bet.nii.gz",
-                     "--vertices", 642, "-o", "masked")
+            mri = self.path("freesurfer/colin/mri")
+            mri.mkdir(parents=True)
+            for name, source in (("T1", "ch2"), ("brainmask", "ch2bet")):
+                image = nibabel.load(TEMPLATES / f"{source}.nii.gz")
+                nibabel.save(nibabel.MGHImage(np.asarray(image.dataobj).astype(np.uint8), image.affine), mri / f"{name}.mgz")
+            self.bem("-s", "colin", "-d", "freesurfer", "--vertices", 642, "-o", "masked")
 
     def test_with_a_brain_mask(self):
         self.make_masked()
+        mne.make_bem_model("colin", ico=None, subjects_dir=self.path("freesurfer"))
         self.accepted("masked", solve=False)  # spheres' models are solved
         self.assert_head("masked")
 

@@ -375,6 +375,21 @@ class Output(BemTest):
         inner.symlink_to("watershed")
         self.fails(BAD_INPUT, "is a link", *arguments, "-o", "new", "--force", *where)
 
+    def test_a_subject_stands_for_its_images_and_its_folder(self):
+        mri = self.path("subjects/anna/mri")
+        mri.mkdir(parents=True)
+        bem = self.path("subjects/anna/bem")
+        self.fails(BAD_INPUT, r"subjects/anna/mri/T1\.mgz", "-s", "anna", "-d", "subjects", *QUICK)
+        self.assertFalse(bem.exists())
+        write_nifti(mri / "T1.mgz", head(values=(100, 10, 200)))
+        write_nifti(mri / "brainmask.mgz", head(radii=(30, 31, 32)))  # BemClientsTest takes a right one
+        self.fails(BAD_INPUT, r"--brain-mask subjects/anna/mri/brainmask\.mgz", "-s", "anna", "-d", "subjects", *QUICK)
+        self.assertFalse(bem.exists())
+        self.bem(*self.labels(), "-s", "anna", env={**os.environ, "SUBJECTS_DIR": "subjects"})
+        for name in NAMES:
+            self.assertEqual((bem / f"{name}.surf").read_bytes(),
+                             self.path(f"subjects/anna/adaptiso-bem/{name}.surf").read_bytes())
+
     def test_interrupted_run_leaves_nothing(self):
         arguments = self.labels()
         run = subprocess.Popen([BEM, *arguments, "-o", "model"], cwd=self.folder,
