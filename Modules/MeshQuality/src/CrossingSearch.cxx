@@ -26,20 +26,27 @@ namespace {
 
 constexpr std::size_t kMostNumbers = std::numeric_limits<std::uint32_t>::max();
 
+Corners cornersOf(const TriangleView& mesh, std::int64_t triangle) {
+    return mesh.cornersOf(static_cast<std::size_t>(triangle));
+}
+using adaptiso::cornersOf;
+
 /// The triangles of a mesh that may cross others, those with area and finite corners, by 32-bit
 /// numbers. Where many are stored in any order they come in the order of space, with points of
 /// their own: nearly all that is done with neighbours would wait for memory.
 struct FiniteTriangles {
     std::vector<TriangleView::Triangle> triangles;
-    std::vector<std::int64_t> numbers;  ///< in the mesh
-    std::vector<Vec3> points;           ///< empty: the mesh's
+    std::vector<std::uint32_t> numbers;  ///< in the mesh
+    std::vector<Vec3> points;            ///< empty: the mesh's
 
-    explicit FiniteTriangles(const TriangleMesh& mesh)
+    template <class Mesh>
+    explicit FiniteTriangles(const Mesh& mesh)
         : FiniteTriangles(mesh, [](std::int64_t) { return true; }) {}
 
+    /// \param mesh     a TriangleMesh or a TriangleView
     /// \param isMeant  isMeant(number): the triangle is one of them
-    template <class IsMeant>
-    FiniteTriangles(const TriangleMesh& mesh, const IsMeant& isMeant) {
+    template <class Mesh, class IsMeant>
+    FiniteTriangles(const Mesh& mesh, const IsMeant& isMeant) {
         if (mesh.points.size() > kMostNumbers || mesh.triangles.size() > kMostNumbers) {
             throw InvalidInput("findSelfIntersections: the mesh has more than " +
                                std::to_string(kMostNumbers) + " points or triangles");
@@ -51,7 +58,7 @@ struct FiniteTriangles {
         reserveInHugePages(numbers, count);
         for (std::int64_t n = 0; n < std::ssize(mesh.triangles); ++n) {
             const auto& [a, b, c] = mesh.triangles[n];
-            for (const VertexId v : {a, b, c}) {
+            for (const VertexId v : {VertexId{a}, VertexId{b}, VertexId{c}}) {
                 if (v >= 0 && v < pointCount) continue;
                 throw InvalidInput("findSelfIntersections: triangle " + std::to_string(n) +
                                    " names vertex " + std::to_string(v) + " of a mesh with " +
@@ -62,16 +69,21 @@ struct FiniteTriangles {
             if (!areFinite(corners) || axisWithArea(corners) < 0) continue;
             triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
                                  static_cast<std::uint32_t>(c)});
-            numbers.push_back(n);
+            numbers.push_back(static_cast<std::uint32_t>(n));
         }
-        if (areScattered(mesh.points.size())) sort(mesh);
+        if (areScattered(mesh.points.size())) sort(mesh.points);
     }
 
-    TriangleView view(const TriangleMesh& of) const {
-        return {points.empty() ? of.points : points, triangles};
+    template <class Mesh>
+    TriangleView view(const Mesh& of) const {
+        return viewOf(of.points);
     }
 
 private:
+    TriangleView viewOf(std::span<const Vec3> all) const {
+        return {points.empty() ? all : points, triangles};
+    }
+
     /// As a fraction of the points: the mean step from a triangle to the next in the list, by their
     /// last points. Marching cubes' is a thousandth, in any order a fifth.
     bool areScattered(std::size_t pointCount) const {
@@ -88,26 +100,26 @@ private:
                kScattered * static_cast<double>(triangles.size()) * static_cast<double>(pointCount);
     }
 
-    void sort(const TriangleMesh& mesh) {
+    void sort(std::span<const Vec3> all) {
         constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
-        const TriangleView stored = view(mesh);
+        const TriangleView stored = viewOf(all);
         const std::vector<std::uint32_t> order =
             inMortonOrder(triangles.size(), stored.box(), [&](std::uint32_t t) {
                 const Corners c = stored.cornersOf(t);
                 return 1.0 / 3 * (c[0] + c[1] + c[2]);
             });
-        std::vector<std::uint32_t> place(mesh.points.size(), kNone);
+        std::vector<std::uint32_t> place(all.size(), kNone);
         std::vector<TriangleView::Triangle> sorted;
-        std::vector<std::int64_t> sortedNumbers;
+        std::vector<std::uint32_t> sortedNumbers;
         reserveInHugePages(sorted, order.size());
         reserveInHugePages(sortedNumbers, order.size());
-        reserveInHugePages(points, mesh.points.size());
+        reserveInHugePages(points, all.size());
         for (const std::uint32_t t : order) {
             TriangleView::Triangle moved = triangles[t];
             for (std::uint32_t& v : moved) {
                 if (place[v] == kNone) {
                     place[v] = static_cast<std::uint32_t>(points.size());
-                    points.push_back(mesh.points[v]);
+                    points.push_back(all[v]);
                 }
                 v = place[v];
             }
@@ -193,13 +205,14 @@ private:
 };
 
 /// Those of the same cell that cross.
-std::vector<std::int64_t> crossingWithinCells(const TriangleMesh& mesh,
+template <class Mesh>
+std::vector<std::int64_t> crossingWithinCells(const Mesh& mesh,
                                               std::span<const std::uint64_t> cells) {
     constexpr std::int64_t kPiece = 1 << 12;  // runs
     const CellRuns runs(cells);
     const double gap = roundingIn(TriangleView{mesh.points, {}}.box());
     const auto cross = [&](std::int64_t a, std::int64_t b) {
-        const Triangle &s = mesh.triangles[a], &t = mesh.triangles[b];
+        const auto &s = mesh.triangles[a], &t = mesh.triangles[b];
         if (areClear(mesh.points, s, t, gap, 0)) return false;
         const Corners first = cornersOf(mesh, a), second = cornersOf(mesh, b);
         return areFinite(first) && areFinite(second) && trianglesCross(first, second);
@@ -221,12 +234,12 @@ std::vector<std::int64_t> crossingWithinCells(const TriangleMesh& mesh,
     return joined(ofPiece);
 }
 
-/// Those that cross a triangle without a cell, and these.
-std::vector<std::int64_t> crossingWithoutCells(const TriangleMesh& mesh,
+/// Of each triangle: it has no cell, or is near one that has none.
+template <class Mesh>
+std::vector<std::uint8_t> nearOnesWithoutCells(const Mesh& mesh,
                                                std::span<const std::uint64_t> cells) {
     constexpr std::int64_t kPiece = 1 << 13;
     const FiniteTriangles free(mesh, [&](std::int64_t t) { return cells[t] == kNoCell; });
-    if (free.triangles.empty()) return {};
     const TriangleView view = free.view(mesh);
     const TriangleTree tree(view);
     std::vector<std::uint8_t> isNear(mesh.triangles.size(), 1);
@@ -238,6 +251,15 @@ std::vector<std::int64_t> crossingWithoutCells(const TriangleMesh& mesh,
                                 [&](std::uint32_t) { isNear[t] = 1; });
         }
     });
+    return isNear;
+}
+
+/// Those that cross a triangle without a cell, and these.
+template <class Mesh>
+std::vector<std::int64_t> crossingWithoutCells(const Mesh& mesh,
+                                               std::span<const std::uint64_t> cells) {
+    if (std::find(cells.begin(), cells.end(), kNoCell) == cells.end()) return {};
+    const std::vector<std::uint8_t> isNear = nearOnesWithoutCells(mesh, cells);
     const FiniteTriangles near(mesh, [&](std::int64_t t) { return isNear[t] != 0; });
     const auto isFree = [&](std::uint32_t t) { return cells[near.numbers[t]] == kNoCell; };
     std::vector<std::int64_t> crossing =
@@ -328,7 +350,11 @@ CrossingTriangles findCrossingTriangles(const TriangleView& mesh) {
     return trianglesOf(findCrossingPairs(mesh));
 }
 
-CrossingTriangles findCrossingTriangles(const TriangleMesh& mesh) {
+namespace {
+
+/// \param mesh  a TriangleMesh or a TriangleView
+template <class Mesh>
+CrossingTriangles findCrossingTrianglesOf(const Mesh& mesh) {
     const FiniteTriangles finite(mesh);
     CrossingTriangles crossing = findCrossingTriangles(finite.view(mesh));
     for (auto* const some : {&crossing.found, &crossing.undecided}) {
@@ -338,6 +364,12 @@ CrossingTriangles findCrossingTriangles(const TriangleMesh& mesh) {
     return crossing;
 }
 
+}  // namespace
+
+CrossingTriangles findCrossingTriangles(const TriangleMesh& mesh) {
+    return findCrossingTrianglesOf(mesh);
+}
+
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
     return allOf(findCrossingTriangles(mesh));
 }
@@ -345,6 +377,12 @@ std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh) {
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh,
                                             std::span<const std::uint64_t> cells) {
     if (cells.empty()) return crossingTriangles(mesh);
+    return joined({crossingWithinCells(mesh, cells), crossingWithoutCells(mesh, cells)});
+}
+
+std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh,
+                                            std::span<const std::uint64_t> cells) {
+    if (cells.empty()) return allOf(findCrossingTrianglesOf(mesh));
     return joined({crossingWithinCells(mesh, cells), crossingWithoutCells(mesh, cells)});
 }
 

@@ -6,7 +6,6 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
-#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/VolumeSurface.h"
 #include "adaptive/mending/LocalUndo.h"
@@ -57,7 +56,6 @@ private:
         SimplifiedSurface surface;
         DistanceProof proof;
         ErrorBound error{};
-        TriangleMesh mesh{};  ///< of the surface; empty where that lies beyond the bound
         /// Its triangles that cross others, or whose piece lies on the wrong side of another
         std::vector<std::int64_t> crossing{};
     };
@@ -88,13 +86,16 @@ private:
     }
 
     AdaptiveResult resultOf(Attempt& attempt) const {
+        SimplifiedSurface& surface = attempt.surface;
         AdaptiveResult result;
-        result.mesh = std::move(attempt.mesh);
         result.errorBoundMm = attempt.error.largestMm;
-        if (wanted_.isGiven()) result.wantedTriangles = wanted_.of(attempt.surface.fineTriangles);
-        result.tableTriangles = attempt.surface.tableTriangles;
+        if (wanted_.isGiven()) result.wantedTriangles = wanted_.of(surface.fineTriangles);
+        result.tableTriangles = surface.tableTriangles;
         result.work = work_;
-        result.work.trianglesKept = trianglesKept(attempt.surface);
+        result.work.trianglesKept = trianglesKept(surface);
+        surface.forgetFull();
+        surface.returnFreedMemory();
+        result.mesh = full_.meshOf(surface);
         return result;
     }
 
@@ -108,10 +109,9 @@ private:
     }
 
     void findCrossings(Attempt& attempt) const {
-        attempt.mesh = full_.meshOf(attempt.surface);
-        attempt.crossing =
-            crossingTriangles(attempt.mesh, full_.cellsOf(attempt.surface, attempt.proof.isFine()));
-        full_.forgiveCrossings(attempt.mesh, attempt.crossing);
+        attempt.proof.rest();
+        attempt.surface.returnFreedMemory();
+        attempt.crossing = full_.crossingTriangles(attempt.surface, attempt.proof.isFine());
         if (attempt.crossing.empty()) attempt.crossing = full_.insideOut(attempt.surface);
     }
 

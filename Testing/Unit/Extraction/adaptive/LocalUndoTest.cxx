@@ -107,7 +107,11 @@ public:
     TriangleMesh meshOf(const detail::SimplifiedSurface& surface) const override {
         return full_.meshOf(surface);
     }
-    void forgiveCrossings(const TriangleMesh&, std::vector<std::int64_t>&) const override {}
+    std::vector<std::int64_t> crossingTriangles(
+        const detail::SimplifiedSurface& surface,
+        const std::vector<std::uint8_t>& isFine) const override {
+        return full_.crossingTriangles(surface, isFine);
+    }
     std::vector<std::int64_t> insideOut(const detail::SimplifiedSurface& surface) const override {
         std::vector<std::int64_t> speck;
         if (pointsNear(surface) == finePoints_) return speck;

@@ -60,13 +60,24 @@ TEST(WalkableSurface, KnowsTheTriangleAcrossEachEdge) {
         }
     }
     EXPECT_EQ(borders, 12);
-    int around = 0;
-    surface.forEachAt(mesh.triangles[0][0], [&](VertexId t) {
-        const auto& corners = mesh.triangles[t];
-        around +=
-            static_cast<int>(std::count(corners.begin(), corners.end(), mesh.triangles[0][0]));
-    });
-    EXPECT_GE(around, 1);
+}
+
+TEST(WalkableSurface, FindsTrianglesAlsoWithoutFans) {
+    // around the plane's border points fans are open to both sides, elsewhere they are closed
+    for (const TriangleMesh& mesh : {planeMesh(3, 3), icosphere(1)}) {
+        const Walkable whole = walkable(mesh);
+        Walkable surface = walkable(mesh);
+        surface.forgetFans();
+        for (VertexId t = 0; t < std::ssize(mesh.triangles); ++t) {
+            for (int c = 0; c < 3; ++c) {
+                const VertexId a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3],
+                               third = mesh.triangles[t][(c + 2) % 3];
+                EXPECT_EQ(surface.find(a, b, third), t);
+                EXPECT_EQ(surface.find(b, a, third), Walkable::kNone);
+                EXPECT_EQ(surface.triangleAt(a), whole.triangleAt(a));
+            }
+        }
+    }
 }
 
 TEST(SurfaceWalk, CoversWhatLiesWithinTheDistanceOfAPlane) {

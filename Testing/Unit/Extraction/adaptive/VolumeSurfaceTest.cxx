@@ -63,11 +63,14 @@ Volume noiseOf(int kind, const ImageGeometry& geometry, std::mt19937& random) {
     return Volume::fromSamples(std::move(samples), geometry);
 }
 
-/// Of the triangles that a proof finds to be the full surface's.
-std::vector<std::uint64_t> cellsOf(const VolumeSurface& full, const SimplifiedSurface& surface) {
+/// Triangles that a proof finds to be the full surface's.
+std::vector<std::uint8_t> fineOnes(const VolumeSurface& full, const SimplifiedSurface& surface) {
     detail::DistanceProof proof(full.fineOf(surface), full.frame(), 0.3);
     proof.prove(surface);
-    return full.cellsOf(surface, proof.isFine());
+    return proof.isFine();
+}
+std::vector<std::uint64_t> cellsOf(const VolumeSurface& full, const SimplifiedSurface& surface) {
+    return full.cellsOf(surface, fineOnes(full, surface));
 }
 
 /// Checks the search that knows the cells against the one that does not.
@@ -76,6 +79,7 @@ std::size_t compareSearches(const VolumeSurface& full, const SimplifiedSurface& 
     const TriangleMesh mesh = full.meshOf(surface);
     const auto known = crossingTriangles(mesh, cellsOf(full, surface));
     EXPECT_EQ(known, crossingTriangles(mesh));
+    EXPECT_EQ(known, full.crossingTriangles(surface, fineOnes(full, surface)));
     SelfIntersectionOptions all;
     all.maxPairs = 1'000'000;
     std::set<std::int64_t> named;

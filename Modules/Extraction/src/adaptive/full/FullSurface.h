@@ -36,18 +36,11 @@ public:
     /// In physical coordinates. Triangles keep their numbers.
     virtual TriangleMesh meshOf(const SimplifiedSurface& surface) const = 0;
 
-    /// Per triangle of meshOf(), the cell that it is known to lie in, such that those of different
-    /// cells do not cross; kNoCell if unknown. Empty if unknown for all.
+    /// Triangles that cross others in physical coordinates, ascending; without those that did so
+    /// from the beginning.
     /// \param isFine  of each triangle: 1 for those that the full surface has, too
-    virtual std::vector<std::uint64_t> cellsOf(const SimplifiedSurface&,
-                                               const std::vector<std::uint8_t>& /*isFine*/) const {
-        return {};
-    }
-
-    /// Removes from `crossing`, triangles of meshOf() that cross others, those that did so from the
-    /// beginning.
-    virtual void forgiveCrossings(const TriangleMesh& mesh,
-                                  std::vector<std::int64_t>& crossing) const = 0;
+    virtual std::vector<std::int64_t> crossingTriangles(
+        const SimplifiedSurface& surface, const std::vector<std::uint8_t>& isFine) const = 0;
 
     /// Triangles of pieces that are inside out, and were not from the beginning. Where the surface
     /// is open there is no inside: nothing is judged by it.

@@ -8,6 +8,7 @@
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/rounds/BorderMarks.h"
 #include "adaptive/rounds/PatchRound.h"
@@ -52,11 +53,6 @@ MetricFrame frameOf(double voxel) {
     geometry.indexToPhysical.column[0].x = geometry.indexToPhysical.column[1].y =
         geometry.indexToPhysical.column[2].z = voxel;
     return MetricFrame(geometry);
-}
-
-Corners cornersIn(const TriangleMesh& mesh, std::int64_t t) {
-    const Triangle& c = mesh.triangles[t];
-    return {mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]};
 }
 
 }  // namespace
@@ -213,11 +209,14 @@ TriangleMesh MeshSurface::meshOf(const SimplifiedSurface& surface) const {
     return mesh;
 }
 
-void MeshSurface::forgiveCrossings(const TriangleMesh& mesh,
-                                   std::vector<std::int64_t>& crossing) const {
+std::vector<std::int64_t> MeshSurface::crossingTriangles(const SimplifiedSurface& surface,
+                                                         const std::vector<std::uint8_t>&) const {
+    const TriangleMesh mesh = meshOf(surface);
+    std::vector<std::int64_t> crossing = adaptiso::crossingTriangles(mesh);
     std::erase_if(crossing, [&](std::int64_t t) {
-        return std::binary_search(crossing_.begin(), crossing_.end(), cornersIn(mesh, t), isBefore);
+        return std::binary_search(crossing_.begin(), crossing_.end(), cornersOf(mesh, t), isBefore);
     });
+    return crossing;
 }
 
 double MeshSurface::largestExtentMm() const {

@@ -27,8 +27,8 @@ public:
     TriangleView fineOf(const SimplifiedSurface&) const override { return parts_.view(); }
     /// Without normals.
     TriangleMesh meshOf(const SimplifiedSurface& surface) const override;
-    void forgiveCrossings(const TriangleMesh& mesh,
-                          std::vector<std::int64_t>& crossing) const override;
+    std::vector<std::int64_t> crossingTriangles(
+        const SimplifiedSurface& surface, const std::vector<std::uint8_t>& isFine) const override;
     std::vector<std::int64_t> insideOut(const SimplifiedSurface& surface) const override;
     double largestExtentMm() const override;
 

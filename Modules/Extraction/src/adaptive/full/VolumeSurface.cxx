@@ -61,27 +61,45 @@ std::uint8_t VolumeSurface::facesAt(const Vec3& point) const {
     return faces;
 }
 
+std::vector<Vec3> VolumeSurface::physicalPoints(const SimplifiedSurface& surface) const {
+    std::vector<Vec3> points;
+    assignInHugePages(points, surface.points.size());
+    parallelForPieces(std::ssize(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t v = begin; v < end; ++v) {
+            points[v] = geometry_.toPhysical(frame().toIndex(surface.points[v]));
+        }
+    });
+    return points;
+}
+
 TriangleMesh VolumeSurface::meshOf(const SimplifiedSurface& surface) const {
     TriangleMesh mesh;
-    assignInHugePages(mesh.points, surface.points.size());
+    mesh.points = physicalPoints(surface);
     assignInHugePages(mesh.normals, surface.points.size());
     parallelForPieces(std::ssize(mesh.points), kGrain, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t v = begin; v < end; ++v) {
-            const Vec3 index = frame().toIndex(surface.points[v]);
-            mesh.points[v] = geometry_.toPhysical(index);
-            mesh.normals[v] = toNormal(sampler_.normalAt(index));
+            mesh.normals[v] = toNormal(sampler_.normalAt(frame().toIndex(surface.points[v])));
         }
     });
-    reserveInHugePages(mesh.triangles, surface.triangles.size());
+    assignInHugePages(mesh.triangles, surface.triangles.size());
     const bool isMirrored = geometry_.isMirrored();
-    for (const auto& t : surface.triangles) {
-        const auto id = [&](int c) { return static_cast<VertexId>(t[c]); };
-        mesh.triangles.push_back(isMirrored ? adaptiso::Triangle{id(0), id(2), id(1)}
-                                            : adaptiso::Triangle{id(0), id(1), id(2)});
-    }
+    parallelForPieces(surface.triangleCount(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t t = begin; t < end; ++t) {
+            const auto& [a, b, c] = surface.triangles[t];
+            mesh.triangles[t] =
+                isMirrored ? adaptiso::Triangle{a, c, b} : adaptiso::Triangle{a, b, c};
+        }
+    });
     mesh = withoutUnusedPoints(std::move(mesh));
     completeNormals(mesh);
     return mesh;
+}
+
+std::vector<std::int64_t> VolumeSurface::crossingTriangles(
+    const SimplifiedSurface& surface, const std::vector<std::uint8_t>& isFine) const {
+    const std::vector<Vec3> points = physicalPoints(surface);
+    return adaptiso::crossingTriangles(TriangleView{points, surface.triangles},
+                                       cellsOf(surface, isFine));
 }
 
 /// A triangle of the full surface lies in the cell that marching cubes made it in. Triangles of

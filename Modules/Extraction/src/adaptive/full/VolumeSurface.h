@@ -25,13 +25,18 @@ public:
         return {surface.fine.points, surface.fine.triangles};
     }
     TriangleMesh meshOf(const SimplifiedSurface& surface) const override;
+    std::vector<std::int64_t> crossingTriangles(
+        const SimplifiedSurface& surface, const std::vector<std::uint8_t>& isFine) const override;
+    /// Per triangle, the cell that it is known to lie in, such that those of different cells do not
+    /// cross; kNoCell if unknown. Empty if unknown for all.
+    /// \param isFine  as above
     std::vector<std::uint64_t> cellsOf(const SimplifiedSurface& surface,
-                                       const std::vector<std::uint8_t>& isFine) const override;
-    void forgiveCrossings(const TriangleMesh&, std::vector<std::int64_t>&) const override {}
+                                       const std::vector<std::uint8_t>& isFine) const;
     std::vector<std::int64_t> insideOut(const SimplifiedSurface& surface) const override;
     double largestExtentMm() const override;
 
 private:
+    std::vector<Vec3> physicalPoints(const SimplifiedSurface& surface) const;
     std::uint8_t facesAt(const Vec3& point) const;
     bool roundsFinely() const;
 

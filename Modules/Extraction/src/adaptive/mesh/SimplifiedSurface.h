@@ -58,10 +58,13 @@ struct SimplifiedSurface : SurfaceState {
 
     SurfaceState& state() { return *this; }
 
+    /// Gives up all that leads back to the full-resolution surface.
+    void forgetFull() { freeMemory(samples, sampleTriangle, heirs, fine.points, fine.triangles); }
+
     /// To be called between steps; small surfaces are not worth the time.
     void returnFreedMemory() const {
-        constexpr std::size_t kLarge = std::size_t{1} << 15;
-        if (samples.size() >= kLarge) adaptiso::returnFreedMemory();
+        constexpr std::int64_t kLarge = std::int64_t{1} << 16;
+        if (fineTriangles >= kLarge) adaptiso::returnFreedMemory();
     }
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/PerThread.h"
 #include "adaptiso/SurfaceProof/PieceBound.h"
@@ -307,36 +308,48 @@ bool isFineSurface(const SimplifiedSurface& surface, const TriangleView& fine) {
 DistanceProof::DistanceProof(const TriangleView& fine, const MetricFrame& frame, double limitMm)
     : fineView_(fine), frame_(frame), limitMm_(limitMm), fineTree_(fine) {}
 
+void DistanceProof::rest() {
+    fine_ = {};
+    fineTree_.emplace(fineView_);
+}
+
 ErrorBound DistanceProof::prove(const SimplifiedSurface& surface) {
     provedMm_ = 0;
     if (isFineSurface(surface, fineView_)) {
-        walkable_ = {};
+        freeMemory(isWithin_);
         isFine_.assign(surface.triangles.size(), 1);
         return {};
     }
     // bounds are as tight as the largest sample's distance, or as a hundredth of a voxel
     enoughMm_ =
         std::min(limitMm_, std::max(largestSampleDistance(surface), 0.01 * frame_.narrowestMm()));
-    if (fine_.isEmpty()) fine_.assign(fineView_.points, fineView_.triangles);
     return prove(surface, Scope());
 }
 
 ErrorBound DistanceProof::proveAgain(const SimplifiedSurface& surface,
                                      const SurfaceChanges& changes) {
-    if (walkable_.isEmpty()) return prove(surface);
+    if (isWithin_.empty()) return prove(surface);
     return prove(surface, scopeOf(surface, changes));
 }
 
 ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& scope) {
+    if (fine_.isEmpty()) {
+        fine_.assign(fineView_.points, fineView_.triangles);
+        fine_.forgetFans();
+    }
     const TriangleView view = surface.view();
+    WalkableSurface<Number> walkable;
     TreeOnDemand tree(view);
-    const Task task{{fine_, fineView_, fineTree_},
-                    {walkable_, view, tree},
+    const Task task{{fine_, fineView_, *fineTree_},
+                    {walkable, view, tree},
                     assignedOf(surface, fineView_.points.size()),
                     frame_.voxelMm(),
                     enoughMm_,
                     limitMm_};
-    walkable_.assign(surface.points, surface.triangles, trianglesFor(scope, view, task.assigned));
+    const std::vector<Number> some = trianglesFor(scope, view, task.assigned);
+    walkable.assign(surface.points, surface.triangles, some);
+    if (some.empty()) walkable.forgetFans();
+    surface.returnFreedMemory();
     const std::vector<std::uint32_t> starts = startsOf(surface, task);
     const std::int64_t fineCount = std::ssize(fineView_.triangles), count = surface.triangleCount(),
                        finePieces = (fineCount + kFinePiece - 1) / kFinePiece,
@@ -347,7 +360,7 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& s
     for (std::size_t t = 0; t < scope.isKnown.size(); ++t) {
         if (scope.isKnown[t] != 0) found.isFine[t] = isFine_[t];
     }
-    PerThread<PieceMap> maps([&] { return PieceMap(fine_, task.assigned, walkable_, enoughMm_); });
+    PerThread<PieceMap> maps([&] { return PieceMap(fine_, task.assigned, walkable, enoughMm_); });
     parallelForPieces(fineCount, kFinePiece, [&](std::int64_t begin, std::int64_t end) {
         results[begin / kFinePiece] =
             proveFine(task, scope.isFineKnown, begin, end, maps.local(), found);
@@ -359,7 +372,7 @@ ErrorBound DistanceProof::prove(const SimplifiedSurface& surface, const Scope& s
     // would wait for the one that asks first
     if (std::any_of(results.begin(), results.end(),
                     [](const PartBound& result) { return result.hasSearched; })) {
-        fineTree_.get();
+        fineTree_->get();
     }
     parallelForPieces(count, kSimplifiedPiece, [&](std::int64_t begin, std::int64_t end) {
         results[finePieces + begin / kSimplifiedPiece] =
@@ -436,7 +449,7 @@ void DistanceProof::markFine(const std::vector<Corners>& changed, Scope& scope) 
     // where much has changed nearly all is near it
     if (changed.size() > scope.isKnown.size() / 4) return;
     const double reachMm = std::min(limitMm_, provedMm_);
-    const TriangleTree& tree = fineTree_.get();
+    const TriangleTree& tree = fineTree_->get();
     scope.isFineKnown.assign(fineView_.triangles.size(), 1);
     const auto markNear = [&](const Corners& corners) {
         constexpr double kRounding = 1 + 1e-9;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "adaptiso/MeshQuality/TriangleTree.h"
@@ -53,6 +54,9 @@ public:
     /// The same of the last surface, which is still there, after some changes.
     ErrorBound proveAgain(const SimplifiedSurface& surface, const SurfaceChanges& changes);
 
+    /// Gives back the memory that proofs take; the next one makes it anew.
+    void rest();
+
     /// Per triangle of the last surface: 1 if the full surface has it too, with the same corners.
     /// Some of those may have 0.
     const std::vector<std::uint8_t>& isFine() const { return isFine_; }
@@ -75,12 +79,11 @@ private:
     const MetricFrame& frame_;
     double limitMm_;
     WalkableSurface<std::uint32_t> fine_;  ///< empty until it is needed
-    TreeOnDemand fineTree_;
+    std::optional<TreeOnDemand> fineTree_;
     double enoughMm_ = 0;  ///< no bound need be tighter
     double provedMm_ = 0;  ///< so far, of what lies within the limit
-    // of the last surface; empty where none was proved, or all of it was the full one
-    WalkableSurface<SurfaceState::Number> walkable_;
-    std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle
+    // of the last surface
+    std::vector<std::uint8_t> isWithin_;  ///< the limit, each triangle; empty: all was the full one
     std::vector<std::uint8_t> isFine_;
     std::vector<PlaceBeyond> beyond_;
 };

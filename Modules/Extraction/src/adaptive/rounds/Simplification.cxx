@@ -263,6 +263,7 @@ void Simplification::fit(SimplifiedSurface& surface) {
         runPatchRound(surface, nextCut(surface), frame_, work);
     }
     freeMemory(surface.quadrics);
+    surface.returnFreedMemory();
 }
 
 }  // namespace adaptiso::detail

@@ -88,7 +88,7 @@ inline constexpr std::uint64_t kNoCell = ~std::uint64_t{0};
 std::vector<std::int64_t> crossingTriangles(const TriangleMesh& mesh,
                                             std::span<const std::uint64_t> cells);
 
-/// \pre the corners of triangles are finite
-std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh);
+std::vector<std::int64_t> crossingTriangles(const TriangleView& mesh,
+                                            std::span<const std::uint64_t> cells);
 
 }  // namespace adaptiso

@@ -61,8 +61,19 @@ public:
         points_ = points;
         triangles_ = triangles;
         normals_.clear();
+        firstAt_.clear();
         halfEdges_.assign(points.size(), triangles, some);
         halfEdges_.match(twin_);
+    }
+
+    /// Keeps one triangle at each vertex in place of all, in a quarter of the memory.
+    /// \pre the surface is a 2-manifold, all of it was assigned
+    void forgetFans() {
+        std::vector<Index> firstAt;
+        assignInHugePages(firstAt, points_.size());
+        for (Index v = 0; v < points_.size(); ++v) firstAt[v] = triangleAt(v);
+        firstAt_ = std::move(firstAt);
+        halfEdges_ = {};
     }
 
     std::size_t triangleCount() const { return triangles_.size(); }
@@ -94,14 +105,9 @@ public:
 
     /// A triangle at a vertex; kNone for a vertex without one.
     Index triangleAt(Index vertex) const {
+        if (!firstAt_.empty()) return firstAt_[vertex];
         const auto leaving = halfEdges_.from(vertex);
         return leaving.empty() ? kNone : leaving.front() / 3;
-    }
-
-    /// Calls f(triangle) for those at a vertex.
-    template <class F>
-    void forEachAt(Index vertex, const F& f) const {
-        for (const Index h : halfEdges_.from(vertex)) f(h / 3);
     }
 
     bool isEmpty() const { return triangles_.empty(); }
@@ -113,14 +119,9 @@ public:
         return v[0] == vertex || v[1] == vertex || v[2] == vertex;
     }
 
-    /// Calls f(triangle) for those that share a corner with one; for some of them several times.
-    template <class F>
-    void forEachBeside(Index t, const F& f) const {
-        for (const Index corner : triangles_[t]) forEachAt(corner, f);
-    }
-
     /// The triangle with these corners in this order; kNone where there is none.
     Index find(Index a, Index b, Index c) const {
+        if (!firstAt_.empty()) return findRound(a, b, c);
         for (const Index h : halfEdges_.from(a)) {
             if (halfEdges_.to(h) == b && triangles_[h / 3][(h + 2) % 3] == c) return h / 3;
         }
@@ -128,11 +129,38 @@ public:
     }
 
 private:
+    static Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
+    static Index previous(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+
+    /// find() round a: one way until it is there again or the surface ends, then the other way.
+    Index findRound(Index a, Index b, Index c) const {
+        const Index first = firstAt_[a];
+        if (first == kNone) return kNone;
+        const auto isIt = [&](Index h) {
+            const auto& t = triangles_[h / 3];
+            return t[(h + 1) % 3] == b && t[(h + 2) % 3] == c;
+        };
+        const auto& corners = triangles_[first];
+        const Index begin = 3 * first + (corners[0] == a ? 0 : corners[1] == a ? 1 : 2);
+        Index h = begin;
+        do {
+            if (isIt(h)) return h / 3;
+            h = twin_[previous(h)];
+        } while (h != kNone && h != begin);
+        if (h == begin) return kNone;
+        for (h = twin_[begin]; h != kNone; h = twin_[h]) {
+            h = next(h);
+            if (isIt(h)) return h / 3;
+        }
+        return kNone;
+    }
+
     std::span<const Vec3> points_;
     std::span<const std::array<Index, 3>> triangles_;
     HalfEdges<Index> halfEdges_;
     std::vector<Index> twin_;
-    std::vector<Vec3> normals_;  ///< of the triangles, where they are kept
+    std::vector<Index> firstAt_;  ///< of each vertex; empty: halfEdges_ has all
+    std::vector<Vec3> normals_;   ///< of the triangles, where they are kept
 };
 
 /// Cuts pieces so that each part lies within a distance of one triangle of a surface: those that
