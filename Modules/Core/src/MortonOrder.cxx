@@ -45,6 +45,7 @@ std::vector<std::uint32_t> sortedByKeys(std::vector<std::uint64_t> keys) {
         });
         keys.swap(sorted);
     }
+    freeMemory(sorted);
     std::vector<std::uint32_t> numbers;
     assignInHugePages(numbers, keys.size());
     parallelForPieces(count, kPiece, [&](std::int64_t begin, std::int64_t end) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptive/Parameters.h"
@@ -89,6 +90,7 @@ std::size_t SurfaceMender::mendAll(const std::vector<PlaceBeyond>& places, const
     const auto mended = std::count_if(places.begin(), places.end(), [&](const PlaceBeyond& place) {
         return !contains(gone_, place.triangle) && mend(place);
     });
+    forget();
     removeTriangles(std::exchange(gone_, {}), surface_, changes_);
     return static_cast<std::size_t>(mended);
 }
@@ -123,10 +125,6 @@ bool SurfaceMender::mergeCorners(Number triangle) {
 }
 
 void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
-    around_.clear();
-    parts_.clear();
-    parent_.clear();
-    samplesOf_.clear();
     inSlot_.assign(kSlots, {});
     isSlotNear_.assign(kSlots, false);
     std::vector<bool> isTrackedVertex(surface_.points.size()), isNear(surface_.triangles.size());
@@ -158,6 +156,13 @@ void SurfaceMender::prepare(const std::vector<PlaceBeyond>& places) {
         return isNear[surface_.sampleTriangle[s]];
     });
     for (const Number s : samples) samplesOf_[surface_.sampleTriangle[s]].push_back(s);
+}
+
+/// Gives back what prepare() filled: a proof follows, which needs the memory.
+void SurfaceMender::forget() {
+    for (auto* const lists : {&around_, &parts_, &samplesOf_}) *lists = decltype(around_)();
+    parent_ = decltype(parent_)();
+    freeMemory(inSlot_, isSlotNear_);
 }
 
 bool SurfaceMender::mendPlace(const PlaceBeyond& place) {

@@ -59,6 +59,7 @@ private:
     template <class Mend>
     std::size_t mendAll(const std::vector<PlaceBeyond>& places, const Mend& mend);
     void prepare(const std::vector<PlaceBeyond>& places);
+    void forget();
     bool mendPlace(const PlaceBeyond& place);
     bool mendCrossing(Number triangle, bool mergesFirst);
     bool mergeCorners(Number triangle);

@@ -24,6 +24,12 @@ void passOn(const std::vector<Number>& newVertex, const std::vector<Number>& mer
     }
 }
 
+/// A copy of a list takes time, and memory meanwhile: it is worth it where a fifth goes.
+template <class T>
+void shrink(std::vector<T>& list) {
+    if (list.capacity() - list.size() >= list.size() / 4) shrinkInHugePages(list);
+}
+
 }  // namespace
 
 std::vector<Vec3> areasAround(const TriangleView& surface) {
@@ -77,12 +83,12 @@ void removeGone(SimplifiedSurface& surface, const std::vector<SurfaceState::Numb
             if (newVertex[v] != kGone) members[newVertex[v]] = members[v];
         }
         members.resize(vertices);
-        shrinkInHugePages(members);
+        shrink(members);
     };
     parallelInvoke(
         [&] {
             surface.triangles.resize(triangles);
-            shrinkInHugePages(surface.triangles);
+            shrink(surface.triangles);
             for (auto& t : surface.triangles) {
                 for (Number& v : t) v = newVertex[v];
             }
