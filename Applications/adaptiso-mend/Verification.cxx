@@ -41,7 +41,7 @@ TriangleMesh withArea(const TriangleMesh& input) {
 Verification measure(const VerifiedSurface& verified, const MendStatistics& statistics) {
     const TriangleMesh& surface = verified.surface;
     const TriangleMesh input = withArea(verified.input);
-    const DistanceReport report = surfaceDistance(surface, input);
+    const DistanceReport report = sampledDistance(surface, input);
     Verification measured;
     if (statistics.filled.empty()) {
         requireWithin(report.aToB.maxMm, statistics.resultToInputMm + verified.roundingMm, surface,

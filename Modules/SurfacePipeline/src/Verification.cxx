@@ -4,7 +4,6 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
-#include "adaptiso/MeshQuality/SurfaceDistance.h"
 
 namespace adaptiso {
 namespace {
@@ -41,9 +40,17 @@ void requireWithin(double measuredMm, double boundMm, const TriangleMesh& surfac
                         ", not " + formatNumber(boundMm));
 }
 
+DistanceReport sampledDistance(const TriangleMesh& surface, const TriangleMesh& original) {
+    constexpr std::int64_t kEach = 4, kFewest = 2000, kMost = 200'000;
+    const std::int64_t triangles =
+        std::max(std::ssize(surface.triangles), std::ssize(original.triangles));
+    return surfaceDistance(surface, original,
+                           {.samples = std::clamp(kEach * triangles, kFewest, kMost)});
+}
+
 Verification verifyDistance(const TriangleMesh& surface, const TriangleMesh& original,
                             double boundMm, const std::string& name, const std::string& begin) {
-    const DistanceStatistics distance = surfaceDistance(surface, original).combined;
+    const DistanceStatistics distance = sampledDistance(surface, original).combined;
     requireWithin(distance.maxMm, boundMm, surface, original, name, begin);
     return {distance.measured(), distance.maxMm};
 }

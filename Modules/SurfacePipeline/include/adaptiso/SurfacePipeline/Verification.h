@@ -4,6 +4,7 @@
 #include <string>
 
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
@@ -26,6 +27,10 @@ bool hasSameShape(const TopologyReport& a, const TopologyReport& b);
 /// \throws InternalError  "a point lies 0.3 mm from the input, not 0.2", after `begin`
 void requireWithin(double measuredMm, double boundMm, const TriangleMesh& surface,
                    const TriangleMesh& original, const std::string& name, const std::string& begin);
+
+/// surfaceDistance() to verify by: from all vertices, and on each surface from 4 points for each
+/// triangle of the larger one; 2,000 at least, 200,000 at most.
+DistanceReport sampledDistance(const TriangleMesh& surface, const TriangleMesh& original);
 
 /// Measures a surface that lies within `boundMm` of `original`, both ways.
 /// \throws InternalError  as requireWithin()
