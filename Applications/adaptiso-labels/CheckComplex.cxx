@@ -84,7 +84,7 @@ LabelsCheck checkSides(const LabelComplex& complex, const LabelsRun& run) {
             first != second && (run.find(first) != nullptr || run.find(second) != nullptr);
         if (isBetween) continue;
         if (count++ == 0) {
-            check.finding = " between " + std::to_string(first) + " and " + std::to_string(second);
+            check.finding = " between " + run.ids.text(first) + " and " + run.ids.text(second);
         }
         if (check.pointsMm.size() < kMostPlaces) {
             check.pointsMm.push_back(middleOfTriangle(complex.points, complex.triangles[t]));

@@ -132,11 +132,15 @@ void numberByTable(std::vector<MaskSource>& masks, const LabelTable& table, cons
     std::set<Label> taken;
     std::vector<std::string> unnamed;
     Label last = 0;
-    for (const LabelEntry& entry : table.entries) last = std::max(last, entry.value);
+    for (const LabelEntry& entry : table.entries) {
+        if (std::in_range<Label>(entry.value))
+            last = std::max(last, static_cast<Label>(entry.value));
+    }
     for (MaskSource& mask : masks) {
         const LabelEntry* const entry = findName(table, mask.name);
-        if (entry != nullptr && taken.insert(entry->value).second) {
-            mask.label = entry->value;
+        const bool isLabel = entry != nullptr && std::in_range<Label>(entry->value);
+        if (isLabel && taken.insert(static_cast<Label>(entry->value)).second) {
+            mask.label = static_cast<Label>(entry->value);
             mask.color = entry->color;
         } else {
             mask.label = ++last;

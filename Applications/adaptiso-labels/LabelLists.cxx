@@ -20,11 +20,11 @@ bool takeLabel(std::string_view& text, Label& label) {
 }
 
 bool takeRange(std::string_view text, LabelRange& range) {
-    if (!takeLabel(text, range.first)) return false;
+    if (!takeId(text, range.first)) return false;
     range.last = range.first;
     if (!text.starts_with('-')) return text.empty();
     text.remove_prefix(1);
-    return takeLabel(text, range.last) && text.empty() && range.first <= range.last;
+    return takeId(text, range.last) && text.empty() && range.first <= range.last;
 }
 
 /// True for a short text that is no list of numbers.
@@ -34,12 +34,12 @@ bool takeName(std::string_view text, LabelRange& range) {
         std::ranges::any_of(text, isControl)) {
         return false;
     }
-    range = {0, 0, std::string(trimmed(text))};
+    range = {{}, {}, std::string(trimmed(text))};
     return true;
 }
 
-bool contain(const LabelRanges& ranges, Label label) {
-    return std::ranges::any_of(ranges, [&](const auto& range) { return range.contains(label); });
+bool contain(const LabelRanges& ranges, const LabelId& id) {
+    return std::ranges::any_of(ranges, [&](const auto& range) { return range.contains(id); });
 }
 
 bool overlap(const LabelRange& a, const LabelRange& b) {
@@ -51,8 +51,8 @@ bool overlap(const LabelRange& a, const LabelRange& b) {
 
 std::string toText(const LabelRange& range) {
     if (!range.name.empty()) return range.name;
-    const std::string first = std::to_string(range.first);
-    return range.first == range.last ? first : first + "-" + std::to_string(range.last);
+    const std::string first = idText(range.first);
+    return range.first == range.last ? first : first + "-" + idText(range.last);
 }
 
 LabelRanges parseLabelRanges(const std::string& option, const std::string& text) {
@@ -76,8 +76,8 @@ LabelRanges parseLabelRanges(const std::string& option, const std::string& text)
     return ranges;
 }
 
-bool LabelMerge::contains(Label label) const {
-    return contain(labels, label);
+bool LabelMerge::contains(const LabelId& id) const {
+    return contain(labels, id);
 }
 
 LabelMerge parseLabelMerge(const std::string& text) {
@@ -107,7 +107,7 @@ void requireDisjoint(const std::vector<LabelMerge>& merges) {
                 for (const LabelRange& b : merges[n].labels) {
                     if (!overlap(a, b)) continue;
                     throw UsageError(both + " both take label " +
-                                     std::to_string(std::max(a.first, b.first)));
+                                     idText(std::max(a.first, b.first)));
                 }
             }
         }

@@ -6,16 +6,17 @@
 #include <string_view>
 #include <vector>
 
+#include "LabelIds.h"
 #include "adaptiso/Labels/Labels.h"
 
 namespace adaptiso::labels {
 
 /// Labels from `first` to `last`, or those of a name that is still to be looked up.
 struct LabelRange {
-    Label first = 0, last = 0;
+    LabelId first, last;
     std::string name{};  ///< not looked up yet (resolveNames()); empty: numbers
 
-    bool contains(Label label) const { return first <= label && label <= last; }
+    bool contains(const LabelId& id) const { return first <= id && id <= last; }
     friend bool operator==(const LabelRange&, const LabelRange&) = default;
 };
 using LabelRanges = std::vector<LabelRange>;
@@ -31,8 +32,8 @@ struct LabelMerge {
     std::string name;
     LabelRanges labels;
 
-    Label number() const { return labels.front().first; }
-    bool contains(Label label) const;
+    LabelId number() const { return labels.front().first; }
+    bool contains(const LabelId& id) const;
 };
 
 /// "Thalamus=10,49" \throws UsageError  as parseLabelRanges(), or without a name

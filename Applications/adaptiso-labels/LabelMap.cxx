@@ -95,14 +95,22 @@ LabelCensus countLabels(const VolumeView& image, const std::string& scaling) {
     return census;
 }
 
-Label mergedNumber(Label label, const std::vector<LabelMerge>& merges) {
+LabelId mergedId(const LabelId& id, const std::vector<LabelMerge>& merges) {
     for (const LabelMerge& merge : merges) {
-        if (merge.contains(label)) return merge.number();
+        if (merge.contains(id)) return merge.number();
     }
-    return label;
+    return id;
 }
 
-Volume mergeLabels(Volume map, const std::vector<LabelMerge>& merges) {
+namespace {
+
+Label mergedNumber(Label label, const std::vector<LabelMerge>& merges, const LabelIds& ids) {
+    return ids.find(mergedId(ids.of(label), merges)).value();
+}
+
+}  // namespace
+
+Volume mergeLabels(Volume map, const std::vector<LabelMerge>& merges, const LabelIds& ids) {
     if (merges.empty()) return map;
     const ImageGeometry& geometry = map.view().geometry();
     std::vector<Label> samples(static_cast<std::size_t>(geometry.voxelCount()));
@@ -110,11 +118,11 @@ Volume mergeLabels(Volume map, const std::vector<LabelMerge>& merges) {
         constexpr int64_t kGrain = 1 << 16;
         parallelForPieces(geometry.voxelCount(), kGrain, [&](int64_t begin, int64_t end) {
             auto last = view.samples[begin];
-            Label number = mergedNumber(static_cast<Label>(last), merges);
+            Label number = mergedNumber(static_cast<Label>(last), merges, ids);
             for (int64_t n = begin; n < end; ++n) {
                 if (view.samples[n] != last) {
                     last = view.samples[n];
-                    number = mergedNumber(static_cast<Label>(last), merges);
+                    number = mergedNumber(static_cast<Label>(last), merges, ids);
                 }
                 samples[n] = number;
             }
@@ -123,9 +131,12 @@ Volume mergeLabels(Volume map, const std::vector<LabelMerge>& merges) {
     return Volume::fromSamples(std::move(samples), geometry);
 }
 
-LabelCensus mergeCounts(LabelCensus census, const std::vector<LabelMerge>& merges) {
+LabelCensus mergeCounts(LabelCensus census, const std::vector<LabelMerge>& merges,
+                        const LabelIds& ids) {
     std::map<Label, int64_t> merged;
-    for (const auto& [label, count] : census.voxels) merged[mergedNumber(label, merges)] += count;
+    for (const auto& [label, count] : census.voxels) {
+        merged[mergedNumber(label, merges, ids)] += count;
+    }
     census.voxels = std::move(merged);
     return census;
 }

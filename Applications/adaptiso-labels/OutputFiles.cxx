@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <functional>
 #include <regex>
@@ -40,11 +39,25 @@ MeshWriteOptions writeOptions(const LabelsRun& run) {
 
 void writeWalls(const LabelComplex& complex, const fs::path& path, const LabelsRun& run) {
     MeshWriteOptions write = writeOptions(run);
-    write.cellArrays = {{"label0", {}}, {"label1", {}}};
     for (std::size_t side = 0; side < 2; ++side) {
-        std::vector<Label>& values = write.cellArrays[side].values;
-        values.reserve(complex.labels.size());
-        for (const auto& labels : complex.labels) values.push_back(labels[side]);
+        const auto valuesOf = [&]<class T>(T, const auto& valueOf) {
+            std::vector<T> values;
+            values.reserve(complex.labels.size());
+            for (const auto& labels : complex.labels) values.push_back(valueOf(labels[side]));
+            return values;
+        };
+        CellArray& array = write.cellArrays.emplace_back();
+        array.name = side == 0 ? "label0" : "label1";
+        if (!run.ids.areNumbered()) {
+            array.values = valuesOf(Label{}, [](Label label) { return label; });
+        } else if (run.map.pixelType == PixelType::Int64) {
+            array.values = valuesOf(std::int64_t{}, [&](Label label) {
+                return static_cast<std::int64_t>(run.ids.of(label).bits);
+            });
+        } else {
+            array.values =
+                valuesOf(std::uint64_t{}, [&](Label label) { return run.ids.of(label).bits; });
+        }
     }
     writeMesh({complex.points, {}, complex.triangles}, path, write);
 }
@@ -91,10 +104,9 @@ void writeTetrahedra(const LabelsRun& run, AtomicFolder& folder) {
 
 /// "12" of "12.vtp", when that is the name of a region's file.
 bool isRegionFile(std::string_view name, bool isVtpOnly) {
-    Label label = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), label);
-    if (error != std::errc()) return false;
-    const std::string_view extension = name.substr(static_cast<std::size_t>(end - name.data()));
+    LabelId id;
+    std::string_view extension = name;
+    if (!takeId(extension, id)) return false;
     if (isVtpOnly) return extension == kVtp;
     return std::ranges::any_of(meshFormats(), [&](const MeshFormat& format) {
         return std::ranges::find(format.extensions, extension) != format.extensions.end();
@@ -227,10 +239,10 @@ std::string regionsTable(const LabelsRun& run) {
         const RegionMeasure& measure = region.measure;
         std::string neighbours;
         for (const RegionContact& contact : measure.neighbours) {
-            addPart(neighbours, std::to_string(contact.label), ",");
+            addPart(neighbours, run.ids.text(contact.label), ",");
         }
         for (const std::string& each :
-             {std::to_string(region.label), writtenCell(region.name),
+             {run.ids.text(region.label), writtenCell(region.name),
               writtenCell(region.abbreviation), hexText(region.color),
               std::to_string(region.voxels), formatNumber(measure.volumeMm3),
               formatNumber(measure.areaMm2), std::to_string(measure.triangles),
@@ -242,7 +254,7 @@ std::string regionsTable(const LabelsRun& run) {
     return text;
 }
 
-void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, const VolumeView& map,
+void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, const Volume& map,
                 LabelsRun& run, AtomicFolder& folder) {
     const bool areVtp = run.options.format == kVtp;
     std::vector<std::function<void()>> works;  // the longest first
@@ -256,7 +268,7 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, con
             });
         }
         if (run.options.writesMap) {
-            add([&, path = folder.place(kMapName)] { writeNifti(map, path); });
+            add([&, path = folder.place(kMapName)] { writeNifti(run.ids.withIds(map), path); });
         }
         std::vector<VtkBlock> blocks;
         for (std::size_t n = 0; n < run.regions.size(); ++n) {
@@ -264,7 +276,7 @@ void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, con
             std::vector<fs::path> paths{folder.place(region.file)};
             blocks.push_back({region.name, region.file});
             if (!areVtp) {
-                blocks.back().file = "all/" + std::to_string(region.label) + std::string(kVtp);
+                blocks.back().file = "all/" + run.ids.text(region.label) + std::string(kVtp);
                 paths.push_back(folder.place(blocks.back().file));
             }
             add([&, n, paths] {

@@ -70,7 +70,7 @@ bool fitsGifti(const LabelsRun& run);
 ///   map.nii.gz            the map itself, where it is wanted
 /// \param map  with merged labels
 /// \throws FileError, InvalidInput  as writeMesh()
-void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, const VolumeView& map,
+void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, const Volume& map,
                 LabelsRun& run, AtomicFolder& folder);
 
 /// regions.tsv.

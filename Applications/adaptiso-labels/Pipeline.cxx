@@ -73,8 +73,10 @@ void warnOfMissing(const LabelMerge& merge, const LabelCensus& census, const std
     std::string missing;
     bool isThere = false;
     for (const LabelRange& range : merge.labels) {
-        const auto first = census.voxels.lower_bound(range.first);
-        if (first != census.voxels.end() && first->first <= range.last) {
+        const bool isInMap = std::ranges::any_of(census.voxels, [&](const auto& label) {
+            return range.contains(run.ids.of(label.first));
+        });
+        if (isInMap) {
             isThere = true;
         } else {
             addPart(missing, toText(range));
@@ -104,10 +106,16 @@ Volume readMap(LabelsOptions& options, LabelsRun& run, LabelCensus& census) {
     const std::string name = baseName(options.input);
     ReadVolume read = readOne(options, run);
     resolveNames(options);
-    const VolumeView& view = read.volume.view();
+    // that isovalues can't tell them apart is nothing to labels
+    std::erase_if(read.warnings, [](const auto& w) { return w.code == "large-integers"; });
+    const VolumeView view = read.volume.view();
     run.map = {read.format, view.geometry(), view.pixelType(), valueRange(view), read.warnings, 0};
     addWarnings(run.warnings, read.warnings, name);
-    census = naming(name, [&] { return countLabels(view, read.scaling); });
+    std::vector<LabelId> merged;
+    for (const LabelMerge& merge : options.merges) merged.push_back(merge.number());
+    run.ids = naming(name, [&] { return LabelIds(view, merged); });
+    if (run.ids.areNumbered()) read.volume = run.ids.numbered(view);
+    census = naming(name, [&] { return countLabels(read.volume, read.scaling); });
     run.map.labels = std::ssize(census.voxels);
     if (census.voxels.empty()) {
         throw InvalidInput(name + ": holds no label: all voxels are 0");
@@ -119,8 +127,8 @@ Volume readMap(LabelsOptions& options, LabelsRun& run, LabelCensus& census) {
             formatFixed(census.medianRun, 2) + " in a row); --any-map takes it all the same");
     }
     for (const LabelMerge& merge : options.merges) warnOfMissing(merge, census, name, run);
-    census = mergeCounts(std::move(census), options.merges);
-    return mergeLabels(std::move(read.volume), options.merges);
+    census = mergeCounts(std::move(census), options.merges, run.ids);
+    return mergeLabels(std::move(read.volume), options.merges, run.ids);
 }
 
 /// \throws InvalidInput  a region has no conductivity, or the map has no such region
@@ -219,8 +227,8 @@ int runLabels(const LabelsOptions& given) {
     LabelCensus census;
     const Volume volume = run.stage("read", [&] { return readMap(options, run, census); });
     const VolumeView& map = volume.view();
-    run.stage("read", [&] { nameRegions(chooseLabels(census, options), census, run); });
-    requireTetrahedraLabels(run);
+    run.stage("read", [&] { nameRegions(chooseLabels(census, run), census, run); });
+    requireFittingLabels(run);
     checkConductivities(run);
     run.printNewWarnings();
 
@@ -249,7 +257,7 @@ int runLabels(const LabelsOptions& given) {
     if (run.writesFolder()) {
         run.stage("write", [&] {
             folder.emplace(run.folder, replaceable(options, run.folder));
-            writeFiles(complex, surfaces, map, run, *folder);
+            writeFiles(complex, surfaces, volume, run, *folder);
             folder->writeText("report.json", folderReport(run));
             run.files = folder->files();
         });

@@ -6,6 +6,7 @@
 
 #include "Common/Json.h"
 #include "Common/UsageWords.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso::labels {
@@ -83,11 +84,11 @@ void resolve(const std::string& option, const LabelTable& table, const std::stri
     ranges = std::move(resolved);
 }
 
-std::string listed(const std::vector<Label>& labels) {
+std::string listed(const std::vector<Label>& labels, const LabelIds& ids) {
     constexpr std::size_t kMost = 5;
     std::string text;
     for (std::size_t n = 0; n < std::min(labels.size(), kMost); ++n) {
-        text += (n == 0 ? "" : ", ") + std::to_string(labels[n]);
+        addPart(text, ids.text(labels[n]));
     }
     return text + (labels.size() > kMost ? ", ..." : "");
 }
@@ -106,7 +107,7 @@ void warnOfNameless(LabelsRun& run) {
                                      ? "none of the regions"
                                      : "all but " + formatCount(std::ssize(nameless)) + " of the " +
                                            formatCount(std::ssize(run.regions)) + " regions, not") +
-                                " " + listed(nameless),
+                                " " + listed(nameless, run.ids),
                             run.names.files.empty() ? "" : run.names.files.front()});
 }
 
@@ -137,7 +138,7 @@ void nameFiles(LabelsRun& run) {
     for (const Region& region : run.regions) ++uses[lowerCase(fileName(region.name))];
     for (Region& region : run.regions) {
         std::string name = region.hasOwnName ? fileName(region.name) : "";
-        const std::string label = std::to_string(region.label);
+        const std::string label = run.ids.text(region.label);
         if (name.empty()) {
             name = label;
         } else if (uses[lowerCase(name)] > 1) {
@@ -149,10 +150,15 @@ void nameFiles(LabelsRun& run) {
     for (const Region& region : run.regions) {
         const auto [other, isNew] = taken.emplace(lowerCase(region.file), region.label);
         if (isNew) continue;
-        throw InvalidInput("--file-names name: labels " + std::to_string(other->second) + " and " +
-                           std::to_string(region.label) + " would both be " + region.file +
+        throw InvalidInput("--file-names name: labels " + run.ids.text(other->second) + " and " +
+                           run.ids.text(region.label) + " would both be " + region.file +
                            "; rename one in the table, or leave the option out");
     }
+}
+
+const LabelEntry* entryOf(const LabelTable& table, const LabelId& id) {
+    const auto value = static_cast<std::int64_t>(id.bits);
+    return LabelId(value) == id ? table.find(value) : nullptr;
 }
 
 }  // namespace
@@ -183,11 +189,12 @@ const Region* LabelsRun::find(Label label) const {
 std::string LabelsRun::nameOf(Label label) const {
     if (label == 0) return "outside";
     const Region* const region = find(label);
-    if (region == nullptr || !region->hasOwnName) return std::to_string(label);
-    return region->name + " (" + std::to_string(label) + ")";
+    if (region == nullptr || !region->hasOwnName) return ids.text(label);
+    return region->name + " (" + ids.text(label) + ")";
 }
 
-std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsOptions& options) {
+std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsRun& run) {
+    const LabelsOptions& options = run.options;
     std::vector<Label> chosen;
     if (options.labels.empty()) {
         for (const auto& [label, voxels] : census.voxels) chosen.push_back(label);
@@ -196,12 +203,11 @@ std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsOptions& 
     for (const LabelRange& range : options.labels) {
         // a label that is merged stands for its region
         const bool isOne = range.first == range.last;
-        const Label first = isOne ? mergedNumber(range.first, options.merges) : range.first;
-        const Label last = isOne ? first : range.last;
+        const LabelId first = isOne ? mergedId(range.first, options.merges) : range.first;
+        const LabelRange meant{first, isOne ? first : range.last};
         const std::size_t before = chosen.size();
-        for (auto at = census.voxels.lower_bound(first);
-             at != census.voxels.end() && at->first <= last; ++at) {
-            chosen.push_back(at->first);
+        for (const auto& [label, voxels] : census.voxels) {
+            if (meant.contains(run.ids.of(label))) chosen.push_back(label);
         }
         if (chosen.size() == before) {
             throw InvalidInput("--labels " + toText(range) + ": " + baseName(options.input) +
@@ -216,25 +222,26 @@ std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsOptions& 
 void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, LabelsRun& run) {
     const LabelTable table = readNames(run);
     std::vector<std::optional<LabelColor>> given;
-    std::map<Label, std::string> mergedNames;
+    std::map<LabelId, std::string> mergedNames;
     for (const LabelMerge& merge : run.options.merges) mergedNames[merge.number()] = merge.name;
     for (const Label label : labels) {
         Region& region = run.regions.emplace_back();
         region.label = label;
         region.voxels = census.voxels.at(label);
         std::optional<LabelColor>& color = given.emplace_back();
-        if (const LabelEntry* const entry = table.find(label)) {
+        const LabelId id = run.ids.of(label);
+        if (const LabelEntry* const entry = entryOf(table, id)) {
             region.name = entry->name;
             region.abbreviation = entry->abbreviation;
             color = entry->color;
         }
-        if (const auto merged = mergedNames.find(label); merged != mergedNames.end()) {
+        if (const auto merged = mergedNames.find(id); merged != mergedNames.end()) {
             region.name = merged->second;
             region.abbreviation.clear();
         }
         region.hasOwnName = !region.name.empty();
-        if (!region.hasOwnName) region.name = "region " + std::to_string(label);
-        region.file = "regions/" + std::to_string(label) + run.options.format;
+        if (!region.hasOwnName) region.name = "region " + idText(id);
+        region.file = "regions/" + idText(id) + run.options.format;
     }
     const std::vector<LabelColor> colors = labelColors(labels, given);
     for (std::size_t n = 0; n < colors.size(); ++n) run.regions[n].color = colors[n];

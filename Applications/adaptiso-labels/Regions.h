@@ -32,13 +32,14 @@ struct LabelCensus {
 LabelCensus countLabels(const VolumeView& image, const std::string& scaling);
 
 /// The map with merged labels as one; the same volume when no labels are merged.
-Volume mergeLabels(Volume map, const std::vector<LabelMerge>& merges);
+Volume mergeLabels(Volume map, const std::vector<LabelMerge>& merges, const LabelIds& ids);
 
 /// The census of that map.
-LabelCensus mergeCounts(LabelCensus census, const std::vector<LabelMerge>& merges);
+LabelCensus mergeCounts(LabelCensus census, const std::vector<LabelMerge>& merges,
+                        const LabelIds& ids);
 
-/// The number that a label goes by when those of `merges` are merged.
-Label mergedNumber(Label label, const std::vector<LabelMerge>& merges);
+/// What a label goes by when those of `merges` are merged.
+LabelId mergedId(const LabelId& id, const std::vector<LabelMerge>& merges);
 
 /// Looks up the names in --labels and --merge: those of --names, of tables beside the input or in
 /// it. \throws InvalidInput  there is no such name; the nearest are named \throws UsageError labels
@@ -47,7 +48,7 @@ void resolveNames(LabelsOptions& options);
 
 /// The labels to take: all of the map's, or those of --labels.
 /// \throws InvalidInput  the map has no label of a requested range
-std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsOptions& options);
+std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsRun& run);
 
 /// Names and colours for the regions of `labels`, in run.regions; warns about labels without a
 /// name. \throws FileError  the table of --names
@@ -56,9 +57,9 @@ void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, La
 /// As the library takes them, ascending.
 std::vector<Label> labelsOf(const std::vector<Region>& regions);
 
-/// \throws InvalidInput  a region's label is below 1, which the files of tetrahedra have no place
-/// for
-void requireTetrahedraLabels(const LabelsRun& run);
+/// \throws InvalidInput  a label is one that the files of --tetrahedra (below 1, beyond 32 bits) or
+/// of --layers (beyond 32 bits) have no place for
+void requireFittingLabels(const LabelsRun& run);
 
 /// Fills the regions with tetrahedra by the mesher asked for, and checks them: run.tetrahedra and
 /// run.checks. \throws FileError  the mesher fails, or writes what can't be read

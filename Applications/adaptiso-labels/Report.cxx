@@ -49,6 +49,13 @@ Json inputJson(const LabelsRun& run) {
     return json;
 }
 
+/// As text where a double, which readers of JSON take numbers for, does not hold it.
+Json idJson(const LabelId& id) {
+    constexpr std::int64_t kExact = std::int64_t{1} << 53;
+    if (id < LabelId(-kExact) || LabelId(kExact) < id) return idText(id);
+    return static_cast<std::int64_t>(id.bits);
+}
+
 Json rangesJson(const LabelRanges& ranges) {
     Json json = Json::array();
     for (const LabelRange& range : ranges) json.push_back(toText(range));
@@ -59,7 +66,7 @@ Json optionsJson(const LabelsOptions& options) {
     Json merges = Json::array();
     for (const LabelMerge& merge : options.merges) {
         merges.push_back({{"name", merge.name},
-                          {"label", merge.number()},
+                          {"label", idJson(merge.number())},
                           {"labels", rangesJson(merge.labels)}});
     }
     Json conductivities = Json::object();
@@ -75,15 +82,18 @@ Json optionsJson(const LabelsOptions& options) {
     return json;
 }
 
-Json regionJson(const Region& region) {
+Json regionJson(const Region& region, const LabelsRun& run) {
     Json json = measureJson(
-        {{"label", region.label},
+        {{"label", idJson(run.ids.of(region.label))},
          {"name", region.name},
          {"isNamed", region.hasOwnName},
          {"abbreviation", region.abbreviation.empty() ? Json(nullptr) : Json(region.abbreviation)},
          {"color", hexText(region.color)},
          {"voxels", region.voxels}},
         region.measure);
+    for (Json& neighbour : json["neighbours"]) {
+        neighbour["label"] = idJson(run.ids.of(neighbour["label"].get<Label>()));
+    }
     json["file"] = region.file;
     return json;
 }
@@ -120,7 +130,7 @@ Json checksJson(const LabelsRun& run) {
 
 Json sharedJson(const LabelsRun& run) {
     Json regions = Json::array();
-    for (const Region& region : run.regions) regions.push_back(regionJson(region));
+    for (const Region& region : run.regions) regions.push_back(regionJson(region, run));
     const bool hasNames = !run.names.format.empty();
     return {{"schema", "adaptiso-labels/1"},
             {"program", {{"name", "adaptiso-labels"}, {"version", programVersion()}}},
@@ -260,7 +270,7 @@ ReportTable regionTable(const LabelsRun& run, const std::vector<std::size_t>& sh
     for (const std::size_t n : shown) {
         const Region& region = run.regions[n];
         const RegionMeasure& measure = region.measure;
-        table.rows.push_back({region.name, std::to_string(region.label), formatCount(region.voxels),
+        table.rows.push_back({region.name, run.ids.text(region.label), formatCount(region.voxels),
                               formatMeasure(measure.volumeMm3), formatMeasure(measure.areaMm2),
                               formatCount(measure.triangles), formatCount(measure.components),
                               std::to_string(measure.eulerCharacteristic),

@@ -76,6 +76,7 @@ struct LabelsRun : ProgramRun {
     CoordinateFrame frame{};
     MapSummary map{};
     JoinedMasks joined{};
+    LabelIds ids{};
     NamesSummary names{};
     LabelStatistics statistics{};
     std::int64_t points = 0, triangles = 0;  ///< of the walls

@@ -7,10 +7,15 @@
 
 namespace adaptiso::labels {
 
-void requireTetrahedraLabels(const LabelsRun& run) {
-    if (!run.options.tetrahedra.isRequested()) return;
+void requireFittingLabels(const LabelsRun& run) {
+    const bool isMeshed = run.options.tetrahedra.isRequested();
+    if (!isMeshed && !run.options.writesLayers) return;
+    if (run.ids.areNumbered()) {
+        throw InvalidInput(std::string(isMeshed ? "--tetrahedra" : "--layers") +
+                           ": the map has labels beyond 2147483647, which the files do not hold");
+    }
     for (const Region& region : run.regions) {
-        if (region.label >= 1) continue;
+        if (!isMeshed || region.label >= 1) continue;
         throw InvalidInput("--tetrahedra: the map has the label " + std::to_string(region.label) +
                            "; Gmsh's numbers of volumes begin with 1");
     }

@@ -1,9 +1,12 @@
 """adaptiso-labels as its users call it: what it writes, what it refuses, names, choices, batches."""
 
+import base64
 import json
 import math
 import random
+import re
 import struct
+import zlib
 
 from labelsSupport import LabelsTest, label_map, three_boxes
 from support import (BAD_INPUT, CHECK_FAILED, OK, USAGE, Image, write_4d_nifti, write_metaimage,
@@ -212,7 +215,6 @@ class HardMapsTest(LabelsTest):
                       Image((10, 10, 10), "B", [values.randrange(5) for _ in range(1000)]))
 
     def test_negative_and_large_labels(self):
-        import struct
         write_nrrd(self.path("large.nrrd"), three_boxes())
         data = self.path("large.nrrd").read_bytes().replace(b"type: int16", b"type: int32")
         head, samples = data.split(b"\n\n", 1)
@@ -223,6 +225,90 @@ class HardMapsTest(LabelsTest):
         self.labels("large.nrrd", "-o", "out", "-q")
         self.assertEqual(set(self.table("out")), {-5, 614454277, 2147483647})
         self.assertTrue((self.path("out") / "regions" / "-5.vtp").is_file())
+
+
+class IdsTest(LabelsTest):
+    """Ids of connectomes, which 32 bits do not hold."""
+    BIG, LARGEST, FAR = 720575940621039145, 2 ** 64 - 1, -2 ** 40
+
+    def write_map(self, name, kind, numbers):
+        """The three boxes with other labels, in 64 bits."""
+        write_nrrd(self.path(name), three_boxes())
+        head, samples = self.path(name).read_bytes().split(b"\n\n", 1)
+        labels = [numbers[each] for each in struct.unpack(f"<{len(samples) // 2}h", samples)]
+        self.path(name).write_bytes(head.replace(b"type: int16", b"type: " + kind.encode())
+                                    + b"\n\n" + struct.pack(f"<{len(labels)}{'Q' if kind[0] == 'u' else 'q'}",
+                                                            *labels))
+
+    def walls(self, folder):
+        """Types and values of the arrays of labels in walls.vtp."""
+        text = (self.path(folder) / "walls.vtp").read_text()
+        data = text.split("\n_", 1)[1]
+        found = []
+        for kind, offset in re.findall(r'type="(\w+)" Name="label\d" format="appended" offset="(\d+)"', text):
+            at = int(offset)
+            (blocks,) = struct.unpack("<Q", base64.b64decode(data[at:at + 12])[:8])
+            table = 4 * -(-8 * (3 + blocks) // 3)
+            lengths = struct.unpack(f"<{blocks}Q", base64.b64decode(data[at:at + table])[24:])
+            packed = base64.b64decode(data[at + table:at + table + 4 * -(-sum(lengths) // 3)])
+            raw = b""
+            for length in lengths:
+                raw, packed = raw + zlib.decompress(packed[:length]), packed[length:]
+            letter = {"Int32": "i", "Int64": "q", "UInt64": "Q"}[kind]
+            found.append((kind, set(struct.unpack(f"<{len(raw) // struct.calcsize(letter)}{letter}", raw))))
+        return found
+
+    def test_come_back_exactly(self):
+        self.write_map("ids.nrrd", "uint64", {0: 0, 1: self.BIG, 2: 5, 7: self.LARGEST})
+        self.path("ids.tsv").write_text(f"index\tname\n{self.BIG}\tbig\n5\tfive\n")
+        done = self.labels("ids.nrrd", "-o", "out", "--write-map", "--names", "ids.tsv")
+        self.assertIn(f"not {self.LARGEST}", done.stderr)  # has no name
+        rows = self.table("out")
+        self.assertEqual({label: row["name"] for label, row in rows.items()},
+                         {5: "five", self.BIG: "big", self.LARGEST: f"region {self.LARGEST}"})
+        self.assertEqual(rows[5]["neighbours"], f"0,{self.BIG},{self.LARGEST}")
+        self.assertEqual({name for name in self.files("out") if name.startswith("regions/")},
+                         {f"regions/{label}.vtp" for label in rows})
+        regions = self.folder_report("out")["regions"]
+        self.assertEqual([region["label"] for region in regions], [5, str(self.BIG), str(self.LARGEST)])
+        self.assertEqual([each["label"] for each in regions[0]["neighbours"]],
+                         [0, str(self.BIG), str(self.LARGEST)])
+        self.assertEqual(self.walls("out"), [("UInt64", {5, self.BIG}),
+                                             ("UInt64", {0, self.BIG, self.LARGEST})])
+        # the surfaces are those of small labels in the same order
+        self.write_map("small.nrrd", "uint64", {0: 0, 1: 2, 2: 1, 7: 3})
+        self.labels("small.nrrd", "-o", "small", "-q")
+        self.assertEqual([kind for kind, _ in self.walls("small")], ["Int32", "Int32"])
+        for large, small in ((5, 1), (self.BIG, 2), (self.LARGEST, 3)):
+            self.assertEqual((self.path("out/regions") / f"{large}.vtp").read_bytes(),
+                             (self.path("small/regions") / f"{small}.vtp").read_bytes())
+        # and so are those of the map that was written
+        self.labels("out/map.nii.gz", "-o", "again", "-q", "--names", "ids.tsv")
+        self.assertEqual((self.path("out/walls.vtp")).read_bytes(),
+                         (self.path("again/walls.vtp")).read_bytes())
+        self.labels("small.nrrd", "-o", "out", "-q", "--force")
+
+    def test_negative_ones(self):
+        self.write_map("ids.nrrd", "int64", {0: 0, 1: self.FAR, 2: 5, 7: self.BIG})
+        self.labels("ids.nrrd", "-o", "out", "-q")
+        self.assertEqual(list(self.table("out")), [self.FAR, 5, self.BIG])
+        self.assertEqual(self.walls("out")[0][0], "Int64")
+        self.assertEqual(self.walls("out")[0][1] | self.walls("out")[1][1], {0, self.FAR, 5, self.BIG})
+
+    def test_are_chosen_and_merged_by_number(self):
+        self.write_map("ids.nrrd", "uint64", {0: 0, 1: self.BIG, 2: 5, 7: self.LARGEST})
+        self.labels("ids.nrrd", "-o", "one", "-q", "--labels", f"{self.BIG}-{self.LARGEST - 1}")
+        self.assertEqual(set(self.table("one")), {self.BIG})
+        new = self.BIG - 1  # a number that the map does not have
+        self.labels("ids.nrrd", "-o", "two", "-q", "--merge", f"both={new},{self.LARGEST},5")
+        self.assertEqual({label: row["name"] for label, row in self.table("two").items()},
+                         {new: "both", self.BIG: f"region {self.BIG}"})
+        self.refused(BAD_INPUT, f"--labels {self.BIG + 1}: ids.nrrd has no such label", "ids.nrrd",
+                     "--labels", str(self.BIG + 1), "-o", "out")
+        self.refused(USAGE, "--labels 18446744073709551616: must be labels", "ids.nrrd", "--labels",
+                     "18446744073709551616", "-o", "out")
+        self.refused(BAD_INPUT, "--layers: the map has labels beyond 2147483647", "ids.nrrd",
+                     "--layers", "-o", "out")
 
 
 class ChoiceTest(LabelsTest):

@@ -125,7 +125,7 @@ std::string labelTableNames() {
     return joined(kKinds, [](const LabelTableKind& kind) { return kind.name; });
 }
 
-const LabelEntry* LabelTable::find(std::int32_t value) const {
+const LabelEntry* LabelTable::find(std::int64_t value) const {
     const auto at = std::ranges::lower_bound(entries, value, {}, &LabelEntry::value);
     return at != entries.end() && at->value == value ? &*at : nullptr;
 }

@@ -80,14 +80,18 @@ std::optional<std::int64_t> wholeNumber(std::string_view word) {
     return static_cast<std::int64_t>(*value);
 }
 
-std::int32_t valueOf(std::string_view word, const Line& line, char separator) {
+std::int64_t valueOf(std::string_view word, const Line& line, char separator) {
+    const std::string_view digits = trimmed(word);
+    std::int64_t whole = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), whole);
+    if (error == std::errc() && end == digits.data() + digits.size()) return whole;
     const std::optional<double> value = cellNumber(word, separator);
-    constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+    constexpr double kMost = std::int64_t{1} << 53;
     if (!value || *value != std::floor(*value) || !(std::abs(*value) <= kMost)) {
         damaged(place(line) + "the index is " + printable(word) +
-                ", must be a whole number that 32 bits hold");
+                ", must be a whole number that 64 bits with a sign hold");
     }
-    return static_cast<std::int32_t>(*value);
+    return static_cast<std::int64_t>(*value);
 }
 
 std::optional<LabelColor> parseColor(std::string_view text) {
@@ -170,7 +174,7 @@ void Collector::scaleColors(bool areParts) {
         }
     }
     const double scale = areAllParts && isAnyFraction ? 255 : 1;
-    std::set<std::int32_t> done;
+    std::set<std::int64_t> done;
     std::size_t bad = 0;
     for (const Raw& raw : raws_) {
         if (!done.insert(raw.value).second) continue;  // the first counts

@@ -35,8 +35,8 @@ bool endsText(const Line& line, std::string_view text);
 std::string place(const Line& line);
 
 /// `word` as a label. \throws FileError "line 7: the index is x, must be a whole number
-/// that 32 bits hold"
-std::int32_t valueOf(std::string_view word, const Line& line, char separator = ',');
+/// that 64 bits with a sign hold"
+std::int64_t valueOf(std::string_view word, const Line& line, char separator = ',');
 
 /// The whole number that all of `word` is (also as "3.0", as some tables have it).
 std::optional<std::int64_t> wholeNumber(std::string_view word);
@@ -74,18 +74,18 @@ public:
 
 private:
     struct Raw {
-        std::int32_t value;
+        std::int64_t value;
         Channels channels;
         std::string where;
     };
     void scaleColors(bool areParts);
 
     LabelTable table_;
-    std::map<std::int32_t, std::size_t> places_;
+    std::map<std::int64_t, std::size_t> places_;
     std::vector<Raw> raws_;
     bool hasLongColor_ = false;
     std::int64_t repeats_ = 0, unread_ = 0;
-    std::int32_t firstRepeat_ = 0;
+    std::int64_t firstRepeat_ = 0;
     std::string firstUnread_;
 };
 

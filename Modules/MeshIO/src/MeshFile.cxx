@@ -114,7 +114,7 @@ void requireArrays(const MeshWriteOptions& options, const TriangleMesh& mesh,
         requireOneEach(array.name, array.points(), mesh.points.size(), "points", file);
     }
     for (const CellArray& array : options.cellArrays) {
-        requireOneEach(array.name, array.values.size(), mesh.triangles.size(), "triangles", file);
+        requireOneEach(array.name, array.cells(), mesh.triangles.size(), "triangles", file);
     }
 }
 

@@ -78,6 +78,7 @@ constexpr NumberType numberType() {
     if constexpr (std::is_same_v<T, double>) return {"Float64", "double"};
     if constexpr (std::is_same_v<T, float>) return {"Float32", "float"};
     if constexpr (std::is_same_v<T, std::int64_t>) return {"Int64", "vtktypeint64"};
+    if constexpr (std::is_same_v<T, std::uint64_t>) return {"UInt64", "vtktypeuint64"};
     if constexpr (std::is_same_v<T, std::int32_t>) return {"Int32", "int"};
     if constexpr (std::is_same_v<T, std::uint8_t>) return {"UInt8", "unsigned_char"};
 }

@@ -523,7 +523,10 @@ private:
     void addCellData(const std::vector<CellArray>& arrays) {
         const std::vector<std::string> names = arrayNames(arrays);
         beginData("CellData", names, false);
-        for (std::size_t i = 0; i < arrays.size(); ++i) addArray(names[i], arrays[i].values, 1);
+        for (std::size_t i = 0; i < arrays.size(); ++i) {
+            std::visit([&](const auto& values) { addArray(names[i], values, 1); },
+                       arrays[i].values);
+        }
         elements_ += "</CellData>\n";
     }
 

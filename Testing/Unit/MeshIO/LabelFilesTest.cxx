@@ -33,19 +33,23 @@ protected:
                        {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 };
 
+using Labels = std::vector<std::int32_t>;
+
 TEST_F(LabelFiles, ArraysOfTrianglesGoIntoVtp) {
     MeshWriteOptions options;
-    options.cellArrays = {{"label0", {1, 1, -2, 7}}, {"label1", {0, 0, 0, 3}}};
+    options.cellArrays = {{"label0", Labels{1, 1, -2, 7}},
+                          {"label1", std::vector<std::uint64_t>{0, 0, 0, ~std::uint64_t{0}}}};
     writeMesh(mesh_, folder_ / "a.vtp", options);
-    EXPECT_NE(text("a.vtp").find("Name=\"label1\""), std::string::npos);
+    EXPECT_NE(text("a.vtp").find("type=\"Int32\" Name=\"label0\""), std::string::npos);
+    EXPECT_NE(text("a.vtp").find("type=\"UInt64\" Name=\"label1\""), std::string::npos);
     EXPECT_EQ(readMesh(folder_ / "a.vtp").mesh.triangles, mesh_.triangles);
 }
 
 TEST_F(LabelFiles, ArraysThatDoNotFitAreRefused) {
     MeshWriteOptions options;
-    options.cellArrays = {{"label0", {1, 1, -2}}};
+    options.cellArrays = {{"label0", Labels{1, 1, -2}}};
     EXPECT_THROW(writeMesh(mesh_, folder_ / "a.vtp", options), InvalidInput);
-    options.cellArrays = {{"label0", {1, 1, -2, 7}}};
+    options.cellArrays = {{"label0", Labels{1, 1, -2, 7}}};
     for (const char* const name : {"a.ply", "a.vtk", "a.gii"}) {
         EXPECT_THROW(writeMesh(mesh_, folder_ / name, options), InvalidInput) << name;
     }

@@ -62,7 +62,8 @@ vtkSmartPointer<vtkPolyData> asVtk(const TriangleMesh& mesh, const MeshWriteOpti
         points->SetActiveScalars(options.pointArrays.front().name.c_str());
     }
     for (const CellArray& array : options.cellArrays) {
-        add<vtkIntArray>(data->GetCellData(), array.name, array.values, 1);
+        add<vtkIntArray>(data->GetCellData(), array.name,
+                         std::get<std::vector<std::int32_t>>(array.values), 1);
     }
     if (!options.cellArrays.empty()) {
         data->GetCellData()->SetActiveScalars(options.cellArrays.front().name.c_str());

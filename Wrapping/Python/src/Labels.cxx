@@ -132,8 +132,10 @@ std::shared_ptr<MeshData> LabelData::walls() const {
 std::string LabelData::write(const std::string& path, std::optional<CoordinateFrame> frame) const {
     std::vector<CellArray> arrays{{"label0", {}}, {"label1", {}}};
     for (std::size_t side = 0; side < arrays.size(); ++side) {
-        arrays[side].values.reserve(complex_.labels.size());
-        for (const auto& labels : complex_.labels) arrays[side].values.push_back(labels[side]);
+        std::vector<Label> values;
+        values.reserve(complex_.labels.size());
+        for (const auto& labels : complex_.labels) values.push_back(labels[side]);
+        arrays[side].values = std::move(values);
     }
     return walls()->write(path, frame, std::move(arrays));
 }

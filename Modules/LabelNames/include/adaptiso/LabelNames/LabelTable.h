@@ -19,7 +19,7 @@ using LabelColor = std::array<std::uint8_t, 3>;
 
 /// A row of a table: one value of a label image.
 struct LabelEntry {
-    std::int32_t value = 0;
+    std::int64_t value = 0;
     std::string name;  ///< UTF-8 without control characters; may be empty (only a colour is known)
     std::string abbreviation;  ///< likewise; may be empty
     std::optional<LabelColor> color;
@@ -34,7 +34,7 @@ struct LabelTable {
     std::vector<Warning> warnings;    ///< one line each, without the file's name
 
     /// \return nullptr when the table does not list the value
-    const LabelEntry* find(std::int32_t value) const;
+    const LabelEntry* find(std::int64_t value) const;
 };
 
 /// The file is not a label table of a known format; it may be anything else.

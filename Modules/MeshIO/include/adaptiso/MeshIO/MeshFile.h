@@ -38,7 +38,12 @@ struct PointArray {
 /// A whole number for every triangle of a mesh.
 struct CellArray {
     std::string name;
-    std::vector<std::int32_t> values;
+    std::variant<std::vector<std::int32_t>, std::vector<std::int64_t>, std::vector<std::uint64_t>>
+        values;
+
+    std::size_t cells() const {
+        return std::visit([](const auto& each) { return each.size(); }, values);
+    }
 };
 
 struct MeshWriteOptions {
@@ -54,8 +59,7 @@ struct MeshWriteOptions {
     /// several components: blanks become _, and components arrays of their own. OBJ and OFF hold
     /// one array of colours alone (MeshFormat::holdsColors).
     std::vector<PointArray> pointArrays{};
-    /// Where the format holds them (MeshFormat::holdsCellArrays): written beside the mesh, as
-    /// Int32.
+    /// Where the format holds them (MeshFormat::holdsCellArrays): written beside the mesh.
     std::vector<CellArray> cellArrays{};
     /// The mesh is in `frame` already, as readMesh() gives it, and is written as it is. TkRas and
     /// Voxel then do without `volume`.
