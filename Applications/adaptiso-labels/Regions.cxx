@@ -1,5 +1,7 @@
 #include "Regions.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -56,6 +58,11 @@ std::string namesNear(const std::string& name, const LabelTable& table) {
     return near.empty() ? "; regions.tsv of a run without --labels lists the names" : near;
 }
 
+/// True for a name that a pattern with * and ? describes, and that is not empty.
+bool matches(const std::string& name, const std::string& pattern) {
+    return !name.empty() && fnmatch(lowerCase(pattern).c_str(), name.c_str(), FNM_NOESCAPE) == 0;
+}
+
 /// Puts the labels that a table names so in place of names.
 void resolve(const std::string& option, const LabelTable& table, const std::string& source,
              LabelRanges& ranges) {
@@ -75,6 +82,8 @@ void resolve(const std::string& option, const LabelTable& table, const std::stri
         take([&](const std::string& name) { return name == range.name; });
         if (resolved.size() > before) continue;
         take([&](const std::string& name) { return lowerCase(name) == lowerCase(range.name); });
+        if (resolved.size() > before) continue;
+        take([&](const std::string& name) { return matches(lowerCase(name), range.name); });
         if (resolved.size() > before) continue;
         throw InvalidInput(option + " " + shown(range.name) + ": " +
                            (table.format.empty()

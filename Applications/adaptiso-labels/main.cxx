@@ -114,7 +114,7 @@ void declareRegions(CLI::App& app, LabelsOptions& options) {
         [&options](const std::string& text) {
             options.labels = parseLabelRanges("--labels", text);
         },
-        "Write these regions only, by number or name, 1,Hippocampus_L,10-20; time and "
+        "Write these regions only, by number or name, 1,Hippocampus_L,10-20, or 'rib_*'; time and "
         "memory go with their walls");
     regions.values(
         "--merge", "NAME=LIST",
@@ -123,7 +123,8 @@ void declareRegions(CLI::App& app, LabelsOptions& options) {
                 options.merges.push_back(parseLabelMerge(text));
             }
         },
-        "Take several labels, numbers or names, for one region, Thalamus=10,49, that goes by "
+        "Take several labels, numbers or names, for one region, Thalamus=10,49, or 'lung=lung_*', "
+        "that goes by "
         "the "
         "first of them; "
         "may be given several times");

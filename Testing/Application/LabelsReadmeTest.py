@@ -31,7 +31,7 @@ class Readme(LabelsTest):
         self.assertEqual({path.name for path in self.path("some/regions").iterdir()},
                          {"1.stl", "7.stl"})
         self.assertEqual(self.table("some")[1]["name"], "both sides")
-        self.assertEqual(self.table("body")[2]["name"], "from6")
+        self.assertEqual(self.table("body")[1]["name"], "all")
         self.assertTrue(self.path("page.html").is_file())
         self.assertTrue((self.path("made") / "other-labels" / "walls.vtp").is_file())
 

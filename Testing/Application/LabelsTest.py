@@ -533,6 +533,19 @@ class NamesTest(LabelsTest):
         self.assertEqual(self.names(), [("left", "#ff0000"), ("right", "#00ff00"),
                                         ("inner", "#0000ff")])
 
+    def test_names_may_be_patterns(self):
+        self.path("boxes.tsv").write_text(
+            "index\tname\n1\tLung_upper\n2\tlung_lower\n7\tlung*\n")
+        self.labels("boxes.nii", "-o", "ribs", "-q", "--labels", "lung_*")
+        self.assertEqual(set(self.table("ribs")), {1, 2})
+        self.labels("boxes.nii", "-o", "one", "-q", "--merge", "lung=LUNG_?????")
+        self.assertEqual({label: row["name"] for label, row in self.table("one").items()},
+                         {1: "lung", 7: "lung*"})
+        self.labels("boxes.nii", "-o", "exact", "-q", "--labels", "lung*")  # a name comes first
+        self.assertEqual(set(self.table("exact")), {7})
+        self.refused(BAD_INPUT, r"--labels kidney\*: boxes.tsv names no label so", "boxes.nii", "-o",
+                     "out", "--labels", "kidney*")
+
     def test_labels_and_merges_take_names(self):
         self.refused(BAD_INPUT, "--labels x: boxes.nii has no table of names; give one", "boxes.nii",
                      "-o", "out", "--labels", "1,x")
