@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "Common/ImageOptions.h"
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "Masks.h"
@@ -11,6 +12,7 @@
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/ImageIO/ListSeries.h"
 
 namespace adaptiso::labels {
 namespace {
@@ -113,6 +115,57 @@ std::vector<MaskSource> sourcesOf(const std::vector<fs::path>& files, const Read
     return masks;
 }
 
+std::string nameOf(const std::string& name, Label label) {
+    const std::string shown = withoutControls(toUtf8(name));
+    return shown.empty() ? "segment " + std::to_string(label) : shown;
+}
+
+/// Those of a DICOM segmentation, by their numbers.
+std::vector<MaskSource> segmentsOf(const LabelsOptions& options) {
+    std::vector<MaskSource> masks;
+    const std::string file = options.input.string();
+    for (const DicomSeries& series : listSeries(options.input).series) {
+        if (!series.segment) continue;
+        const auto label = static_cast<Label>(*series.segment);
+        if (!series.isReadable()) throw FileError(file + ": " + series.fault);
+        if (std::ranges::count(masks, label, &MaskSource::label) > 0) {
+            throw InvalidInput(file + ": holds several segmentations; give the file of one");
+        }
+        masks.push_back({options.input, nameOf(series.segmentLabel, label), label});
+        masks.back().read = options.read;
+        masks.back().read.series = std::to_string(series.number);
+    }
+    if (masks.empty()) throw InvalidInput(file + ": holds no segment; leave --segments out");
+    std::ranges::sort(masks, {}, &MaskSource::label);
+    return masks;
+}
+
+/// Those of a .seg.nrrd, numbered from 1 layer by layer. None of one with a single layer, which is
+/// a map.
+std::vector<MaskSource> layersOf(const LabelsOptions& options) {
+    std::vector<MaskSource> masks;
+    std::int64_t layers = 1;
+    try {
+        readImage(options.input, options.read);
+    } catch (const ChoiceNeeded& choice) {
+        layers = choice.count();
+    }
+    for (std::int64_t layer = 0; layers > 1 && layer < layers; ++layer) {
+        for (const LabelEntry& entry : readEmbeddedTable(options.input, layer).entries) {
+            const auto label = static_cast<Label>(masks.size() + 1);
+            masks.push_back({options.input, nameOf(entry.name, label), label, entry.color});
+            masks.back().read = options.read;
+            masks.back().read.volumeIndex = layer;
+            masks.back().value = entry.value;
+        }
+    }
+    if (layers > 1 && masks.empty()) {
+        throw InvalidInput(options.input.string() +
+                           ": names no segment; choose a volume (--volume-index)");
+    }
+    return masks;
+}
+
 /// The row of a name; case counts only where two differ by it.
 const LabelEntry* findName(const LabelTable& table, const std::string& name) {
     const auto find = [&](const auto& isSame) -> const LabelEntry* {
@@ -162,6 +215,11 @@ void numberByTable(std::vector<MaskSource>& masks, const LabelTable& table, cons
 }  // namespace
 
 void findMasks(LabelsOptions& options, LabelsRun& run) {
+    if (options.joinsSegments) {
+        options.masks =
+            recognizeImage(options.input) == "DICOM" ? segmentsOf(options) : layersOf(options);
+        return;
+    }
     options.masks = sourcesOf(filesOfMasks(options), options.read);
     if (options.masks.empty() && options.priority.rule != MaskPriority::Rule::LastByName) {
         throw UsageError("--priority: is for masks, and " + baseName(options.input) +

@@ -192,7 +192,8 @@ std::vector<std::size_t> orderOf(const MaskPriority& priority, const std::vector
                                  MaskReader& reader) {
     std::vector<std::size_t> order(masks.size());
     for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
-    std::ranges::sort(order, std::ranges::greater{}, [&](std::size_t n) { return masks[n].name; });
+    std::ranges::sort(order, std::ranges::greater{},
+                      [&](std::size_t n) { return std::pair(masks[n].name, masks[n].label); });
     if (priority.rule == MaskPriority::Rule::LastByName) return order;
     if (priority.rule == MaskPriority::Rule::Listed) {
         std::vector<std::size_t> listed = listedOrder(priority.list, masks);

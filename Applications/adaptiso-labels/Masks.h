@@ -61,7 +61,10 @@ struct JoinedMasks {
 /// Finds the masks that the inputs are, in options.masks: those of --join, or the images of a
 /// folder that holds no DICOM and is no Zarr. None: the input is one map.
 ///
-/// They are numbered from 1 by name; with --names by the rows of their names, others after these.
+/// With --segments all: the segments of a DICOM segmentation, or of a .seg.nrrd with several
+/// layers.
+///
+/// Files are numbered from 1 by name; with --names by the rows of their names, others after these.
 /// \throws FileError     a link of the folder leads out of it, or nowhere
 /// \throws InvalidInput  two masks have one name
 void findMasks(LabelsOptions& options, LabelsRun& run);

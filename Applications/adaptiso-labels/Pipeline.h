@@ -25,7 +25,8 @@ struct LabelsOptions {
     std::filesystem::path input;                ///< the one, when it is one
     BatchOptions batch;
     ReadOptions read;
-    bool joinsMasks = false;  ///< the inputs are masks of one map
+    bool joinsMasks = false;     ///< the inputs are masks of one map
+    bool joinsSegments = false;  ///< those of a segmentation are
     MaskPriority priority;
     std::vector<MaskSource> masks;  ///< of the one map; empty: the input is a map (findMasks())
     bool takesAnyMap = false;       ///< also one that changes from voxel to voxel

@@ -70,6 +70,12 @@ void checkCombinations(const LabelsOptions& options) {
     if (options.joinsMasks && options.output.empty()) {
         throw UsageError("--join: needs -o DIR, as no input names the map");
     }
+    if (options.joinsSegments &&
+        (options.joinsMasks || options.read.series || options.read.volumeIndex)) {
+        throw UsageError(
+            "--segments all: takes all of one input, so not with --join, --series or "
+            "--volume-index");
+    }
     requireDisjoint(options.merges);
     const std::filesystem::path& output = options.output;
     const std::string extension = output.extension().string();
@@ -92,6 +98,14 @@ void declareInput(CLI::App& app, LabelsOptions& options) {
     declareReadOptions(app, options.read, kInput);
     input.flag("--join", options.joinsMasks,
                "Take the INPUTs for masks of one map, each a region, in place of a batch");
+    input.value(
+        "--segments", "all",
+        [&options](const std::string& text) {
+            parseChoice("--segments", text, {"all"});
+            options.joinsSegments = true;
+        },
+        "Take all segments of a DICOM segmentation, or all layers of a 3D Slicer .seg.nrrd, for "
+        "masks of one map");
     input.value(
         "--priority", "FILE|largest|smallest",
         [&options](const std::string& text) { options.priority = MaskPriority::parse(text); },

@@ -4,6 +4,7 @@ import gzip
 import json
 import os
 
+from DicomTest import segmentation
 from labelsSupport import LabelsTest, label_map
 from support import BAD_INPUT, USAGE, main, write_metaimage, write_nifti, write_nrrd
 
@@ -166,6 +167,45 @@ class JoinTest(MasksTest):
                                         "largest", "--skip-existing", "--json", "-").stdout
                             .splitlines()[0])
         self.assertEqual(report["error"], None)
+
+
+class SegmentsTest(LabelsTest):
+    def voxels(self, folder):
+        return {region["name"]: (region["label"], region["voxels"])
+                for region in self.folder_report(folder)["regions"]}
+
+    def test_of_dicom(self):
+        # frames at 2 mm: 4 of the liver, 3 of the kidney; they share 4 x 5 pixels of two
+        boxes = {1: (2, 4, 6, 8), 2: (6, 8, 10)}
+        inside = lambda segment, i, j, z: 2 <= j < 7 and (2 <= i < 8 if segment == 1 else 4 <= i < 10)
+        self.path("seg.dcm").write_bytes(segmentation(boxes, 13, 11, inside))
+        done = self.labels("seg.dcm", "--segments", "all", "-o", "out")
+        self.assertIn("40 voxels lie in more than one mask; the last by name keeps them: Liver 40 of "
+                      "Left kidney", done.stderr)
+        self.assertEqual(self.voxels("out"), {"Liver": (1, 120), "Left kidney": (2, 90 - 40)})
+        self.labels("seg.dcm", "--segments", "all", "--labels", "left kidney", "--priority",
+                    "smallest", "-o", "one", "-q")
+        self.assertEqual(self.voxels("one"), {"Left kidney": (2, 90)})
+        self.refused(USAGE, "--segments all: takes all of one input", "seg.dcm", "--segments", "all",
+                     "--series", "1", "-o", "x")
+
+    def test_of_layers(self):
+        # layer 0 has liver (1) and spleen (2), layer 1 a tumour (1) that lies in both
+        labels = ("Segment0_Name:=liver\nSegment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Color:=1 0 0\n"
+                  "Segment1_Name:=spleen\nSegment1_LabelValue:=2\nSegment1_Layer:=0\nSegment1_Color:=0 1 0\n"
+                  "Segment2_Name:=tumour\nSegment2_LabelValue:=1\nSegment2_Layer:=1\nSegment2_Color:=0 0 1\n")
+        header = ("NRRD0004\ntype: uchar\ndimension: 4\nspace: left-posterior-superior\n"
+                  f"sizes: 2 {SIZE[0]} {SIZE[1]} {SIZE[2]}\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\n"
+                  "kinds: list domain domain domain\nencoding: raw\nspace origin: (0,0,0)\n")
+        samples = bytes(value for k in range(SIZE[2]) for j in range(SIZE[1]) for i in range(SIZE[0])
+                        for value in ((2 if i >= 6 else 1) if holds(((2, 10), (2, 8), (2, 6)), i, j, k)
+                                      else 0, int(holds(((4, 8), (4, 6), (3, 5)), i, j, k))))
+        self.path("two.seg.nrrd").write_bytes((header + labels + "\n").encode() + samples)
+        self.labels("two.seg.nrrd", "--segments", "all", "-o", "out", "-q")
+        self.assertEqual(self.voxels("out"), {"liver": (1, 96 - 8), "spleen": (2, 96 - 8),
+                                              "tumour": (3, 16)})
+        self.assertEqual([region["color"] for region in self.folder_report("out")["regions"]],
+                         ["#ff0000", "#00ff00", "#0000ff"])
 
 
 class RefusalTest(MasksTest):
