@@ -329,8 +329,8 @@ struct Cell {
     bool isUnseen() const { return 3 * seen < rays; }
 };
 
-/// Fills band.unseenMm2 and unseenMm: cubes in which less than a third of the rays show a band,
-/// joined by faces, edges and corners.
+/// Fills band.unseenMm2, unseenMm and upperTissueFraction. Unseen are cubes in which less than a
+/// third of the rays show a band, joined by faces, edges and corners.
 void findUnseen(const std::vector<Ray>& rays, const std::vector<Search::Answer>& answers,
                 const ImageGeometry& grid, SkullBand& band) {
     constexpr double kCellMm = 8, kFromBelow = 0.4;
@@ -343,11 +343,13 @@ void findUnseen(const std::vector<Ray>& rays, const std::vector<Search::Answer>&
         highest = std::max(highest, starts.back().z);
     }
     std::map<Place, Cell> cells;
+    std::int64_t towardsScalp = 0, inTissue = 0;
     for (std::size_t n = 0; n < rays.size(); ++n) {
         const Vec3& p = starts[n];
-        if (!answers[n].reachesSkin || answers[n].endsAtImage ||
-            p.z < lowest + kFromBelow * (highest - lowest))
-            continue;
+        if (!answers[n].reachesSkin || p.z < lowest + kFromBelow * (highest - lowest)) continue;
+        ++towardsScalp;
+        inTissue += answers[n].startsInTissue ? 1 : 0;
+        if (answers[n].endsAtImage) continue;
         Place place;
         for (int a = 0; a < 3; ++a)
             place[a] = static_cast<std::int64_t>(std::floor(p[a] / kCellMm));
@@ -358,6 +360,10 @@ void findUnseen(const std::vector<Ray>& rays, const std::vector<Search::Answer>&
         // the voxels that a plane passes lie one above each face along the axis it faces most
         const Vec3& d = rays[n].direction;
         cell.voxelFaces += 1 / std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+    }
+    if (towardsScalp > 0) {
+        band.upperTissueFraction =
+            static_cast<double>(inTissue) / static_cast<double>(towardsScalp);
     }
     std::erase_if(cells, [](const auto& cell) { return !cell.second.isUnseen(); });
     while (!cells.empty()) {

@@ -15,6 +15,8 @@ struct SkullBand {
     /// The part of these rays that begins in 4 mm as bright as half of the brain's level: brain was
     /// lost there, or the inner skull lies in muscle.
     double tissueFraction = 0;
+    /// The same of the inner skull's upper three fifths, without orbits, temporal poles and base.
+    double upperTissueFraction = 0;
     double medianThicknessMm = 0;  ///< over the rays that do
     /// The largest connected part of the inner skull's upper three fifths whose rays to the scalp
     /// mostly show no band: its area, and the middle.

@@ -196,11 +196,14 @@ class LostBrain : public InvalidInput {
     using InvalidInput::InvalidInput;
 };
 
-/// Checks the inner skull's place by the tissue around it. Right ones have 2 to 8 % of
-/// rays that begin in tissue (at the temples and the base), brains that lost a part 13 to 60 %.
-void requireBandInSight(const SkullBand& band, bool isGuess, RawBoundaries& found) {
+/// Checks the inner skull's place by the tissue around it. Guesses that are right have 2 to 8 % of
+/// rays that begin in tissue (at the temples and the base), those that lost a part 13 to 60 %.
+/// Masks are drawn to their makers' liking there: they are judged by the upper three fifths, where
+/// ch2's has 4 %, eroded by 2, 3 and 4 mm 7, 12 and 32 %.
+void requireBandInSight(const SkullBand& band, bool isGuess, double csfMm, RawBoundaries& found) {
     std::vector<Warning>& warnings = found.warnings;
-    constexpr double kUsuallySeen = 0.6, kUsuallyInTissue = 0.12, kMostInTissue = 0.3;
+    constexpr double kUsuallySeen = 0.6, kUsuallyInTissue = 0.12, kUsuallyOfMask = 0.1,
+                     kMostInTissue = 0.3;
     constexpr double kLeastSeen = 0.2;       // stripped images: 0 to 5 %
     constexpr double kMostUnseenMm2 = 2500;  // ch2 and copies of it: at most 21 cm2; a flap: 37
     if (band.seenFraction < kLeastSeen) {
@@ -213,13 +216,23 @@ void requireBandInSight(const SkullBand& band, bool isGuess, RawBoundaries& foun
                         " of the rays to the scalp begin in 4 mm of tissue as bright as brain; "
                         "give a brain mask, or of a child below 5 years --age");
     }
-    if (band.tissueFraction > kUsuallyInTissue) {
+    if (isGuess && band.tissueFraction > kUsuallyInTissue) {
         warnings.push_back(
             {"brain-doubtful",
              percentOf(band.tissueFraction) +
                  " of the rays to the scalp begin in 4 mm of tissue as bright as brain, "
                  "2 to 8 % are usual: a part of the brain may be lost, or muscle taken "
-                 "for it; look at the result, or give a better brain mask"});
+                 "for it; look at the result, or give a brain mask"});
+    } else if (!isGuess && band.upperTissueFraction > kUsuallyOfMask) {
+        const bool isSmall = band.seenFraction >= kUsuallySeen;  // else rays begin in the scalp
+        warnings.push_back(
+            {"brain-doubtful",
+             std::string("the brain mask may be too ") + (isSmall ? "small" : "large") +
+                 ": outside of it, " + percentOf(band.upperTissueFraction) +
+                 " of the rays from the vault to the scalp begin in 4 mm of tissue as bright as "
+                 "brain, 1 to 7 % are usual; give a " +
+                 (isSmall ? "larger one, or --csf more than " + shortNumber(csfMm) + " mm"
+                          : std::string("smaller one"))});
     }
     if (band.seenFraction < kUsuallySeen) {
         warnings.push_back(
@@ -368,7 +381,7 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
             "at this age the skull is too thin to show holes or that brain is lost: look at the "
             "inner skull");
     }
-    requireBandInSight(band, isGuess, raw);
+    requireBandInSight(band, isGuess, options.csfMm, raw);
     if (!options.innerSkullOnly) {
         raw.notes.push_back("skull band seen on " + shortNumber(100 * band.seenFraction) +
                             " % of the rays to the scalp, median thickness " +

@@ -516,6 +516,36 @@ TEST(BoundariesFromT1, RefuseAMaskThatIsNoBrainsOrLiesElsewhere) {
     expectRefused([&] { tryMask(sphere({33, -4, 8}, 66)); }, "in the same space?");
 }
 
+TEST(BoundariesFromT1, TakeAMaskThatLiesInTissueAtTheBaseAlone) {
+    const LargeHead head;
+    // no dark band in the lower third, as with muscle at the temporal poles: a right mask all the
+    // same, and no cause for a better one
+    HeadShapes boneless = head.shapes;
+    boneless.outerSkull = boneless.innerSkull;
+    const std::vector<float> bright = headT1(boneless, 0, head.geometry);
+    BoundaryOptions options;
+    options.stepMm = 3;
+    const auto warningsWith = [&](double brightBelowZ, double maskMm) {
+        std::vector<std::uint8_t> mask;
+        for (const float part : partInside(sphere({3, -4, 8}, maskMm), head.geometry)) {
+            mask.push_back(part >= 0.5);
+        }
+        std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);
+        for (std::int64_t n = 0; n < std::ssize(t1); ++n) {
+            if (placeOf(n, head.geometry).z < brightBelowZ) t1[n] = std::min(bright[n], 100.0f);
+        }
+        return boundariesFromT1({t1.data(), head.geometry}, VolumeView(mask.data(), head.geometry),
+                                options)
+            .warnings;
+    };
+    EXPECT_TRUE(warningsWith(-12, 66).empty());
+    // a mask 5 mm smaller than the brain is too small all round
+    const std::vector<Warning> warnings = warningsWith(-100, 60);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].code, "brain-doubtful");
+    EXPECT_NE(warnings[0].text.find("the brain mask may be too small"), std::string::npos);
+}
+
 TEST(BoundariesFromT1, RefuseASkullStrippedImageByName) {
     const LargeHead head;
     std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);
