@@ -218,7 +218,8 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
     } else {
         throw InvalidInput(
             "the file says no coordinate frame, and has no nasion and ears to find it by; state it "
-            "by --electrodes-in ras, lps or tkras (electrodes_in in Python)");
+            "by --electrodes-in ras, lps or tkras (electrodes_in in Python), or of a template "
+            "whose names are of the 10-05 system take --montage (montage)");
     }
     for (NamedPoint& p : file.points) p.point = move(p.point);
     return file.points;
