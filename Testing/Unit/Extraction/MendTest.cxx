@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -190,6 +191,33 @@ TEST(Mend, UnitesSolidsThatShareAWall) {
     EXPECT_EQ(mended.statistics.cells, 0);
     EXPECT_DOUBLE_EQ(enclosedVolume(mended.mesh), 2);
     EXPECT_NEAR(areaOf(mended.statistics.inner), 1, 0.02);  // the wall between
+}
+
+TEST(Mend, UnitesSolidsThatShareTheirWallsPoints) {
+    TriangleMesh cubes = merged({cubeMesh(), cubeMesh({1, 0, 0}, {2, 1, 1})});
+    for (Triangle& t : cubes.triangles) {
+        for (VertexId& v : t) {
+            v = std::find(cubes.points.begin(), cubes.points.end(), cubes.points[v]) -
+                cubes.points.begin();
+        }
+    }
+    const Mended mended = mend(withoutUnusedPoints(cubes));
+    expectMended(mended);
+    EXPECT_EQ(mended.mesh.triangles.size(), 20u);
+    EXPECT_DOUBLE_EQ(enclosedVolume(mended.mesh), 2);
+}
+
+TEST(Mend, KeepsASurfaceOfWhichAPartComesTwice) {
+    const TriangleMesh sphere = bare(icosphere(3));
+    for (const bool isTurned : {false, true}) {
+        TriangleMesh partly = sphere;
+        for (std::size_t t = 0; t < sphere.triangles.size(); t += t < 600 ? 1 : 97) {
+            auto [a, b, c] = sphere.triangles[t];
+            if (isTurned || t % 3 == 0) std::swap(b, c);
+            partly.triangles.push_back({a, b, c});
+        }
+        EXPECT_EQ(mend(partly).mesh.triangles, sphere.triangles);
+    }
 }
 
 /// What a bound dissolves is listed, not only what lies in new cells.

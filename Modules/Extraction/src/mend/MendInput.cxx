@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -167,19 +168,21 @@ std::int64_t mergeNearBorderPoints(MendInput& input, double reachMm, double& mov
     return renumber(input, becomes);
 }
 
-/// Triangles to drop of those at one place: all but one that faces as more of them do. Where as
-/// many face either way, as walls of solids that touch, all go, but for those of the same points.
-/// \param keepsOne  of all
-/// \param gone  gets one of each set that goes
-std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
-                                      const std::vector<Triangle>& triangles, bool keepsOne,
-                                      std::vector<std::size_t>& gone) {
-    gone.clear();
+/// Triangles at one place.
+struct Doubled {
+    Triangle places;                   ///< ascending
+    std::vector<std::size_t> numbers;  ///< ascending
+    std::vector<int> facings;  ///< 1 or -1: whether an even number of swaps makes them ascend
+    int facing = 0;            ///< their sum
+};
+
+std::vector<Doubled> collectDoubled(const std::vector<Vec3>& points,
+                                    const std::vector<Triangle>& triangles) {
     const std::vector<VertexId> place = placesOf(points);
     struct Placed {
-        Triangle places;  ///< ascending
+        Triangle places;
         std::size_t number;
-        int facing;  ///< 1 or -1: whether an even number of swaps makes them so
+        int facing;
         bool operator<(const Placed& o) const {
             return places != o.places ? places < o.places : number < o.number;
         }
@@ -195,32 +198,90 @@ std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
         all.push_back({t, n, facing});
     }
     std::sort(all.begin(), all.end());
-    const auto pointsOf = [&](std::size_t n) {
-        Triangle t = triangles[n];
-        std::sort(t.begin(), t.end());
-        return t;
-    };
-    std::vector<std::uint8_t> isDoubled(triangles.size());
-    for (std::size_t begin = 0, end; begin < all.size(); begin = end) {
-        int facing = 0;
-        bool haveOnePoints = true;
-        for (end = begin; end < all.size() && all[end].places == all[begin].places; ++end) {
-            facing += all[end].facing;
-            haveOnePoints =
-                haveOnePoints && pointsOf(all[end].number) == pointsOf(all[begin].number);
-            isDoubled[all[end].number] = 1;
+    std::vector<Doubled> sets;
+    for (const Placed& placed : all) {
+        if (sets.empty() || sets.back().places != placed.places) sets.emplace_back().places = placed.places;
+        Doubled& set = sets.back();
+        set.numbers.push_back(placed.number);
+        set.facings.push_back(placed.facing);
+        set.facing += placed.facing;
+    }
+    return sets;
+}
+
+/// Of sets of which as many face either way: whether they are walls of solids that touch. Others
+/// are a surface given twice. Where such sets hang together they are walls if mostly an even number
+/// of other triangles meets at the edges where they end: two solids go on from there.
+std::vector<std::uint8_t> findWalls(const std::vector<Doubled>& sets) {
+    struct EdgeOfSet {
+        VertexId a, b;
+        std::size_t set;
+        bool operator<(const EdgeOfSet& o) const {
+            return std::tie(a, b, set) < std::tie(o.a, o.b, o.set);
         }
-        if (facing == 0 && !haveOnePoints && !keepsOne) {
-            gone.push_back(all[begin].number);
+    };
+    std::vector<EdgeOfSet> edges;
+    edges.reserve(3 * sets.size());
+    for (std::size_t n = 0; n < sets.size(); ++n) {
+        const auto& [a, b, c] = sets[n].places;
+        edges.insert(edges.end(), {{a, b, n}, {b, c, n}, {a, c, n}});
+    }
+    std::sort(edges.begin(), edges.end());
+    DisjointSets regions(std::ssize(sets));
+    std::vector<std::int64_t> votes(sets.size());
+    struct Vote {
+        std::size_t set;
+        int isEven;
+    };
+    std::vector<Vote> cast;
+    for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
+        std::size_t others = 0;
+        std::optional<std::size_t> first;
+        for (end = begin;
+             end < edges.size() && edges[end].a == edges[begin].a && edges[end].b == edges[begin].b;
+             ++end) {
+            const Doubled& set = sets[edges[end].set];
+            if (set.facing != 0) {
+                ++others;
+            } else if (first) {
+                regions.join(static_cast<std::int64_t>(*first),
+                             static_cast<std::int64_t>(edges[end].set));
+            } else {
+                first = edges[end].set;
+            }
+        }
+        if (first && others > 0) cast.push_back({*first, others % 2 == 0 ? 1 : -1});
+    }
+    for (const auto& [set, isEven] : cast) {
+        votes[regions.find(static_cast<std::int64_t>(set))] += isEven;
+    }
+    std::vector<std::uint8_t> isWall(sets.size());
+    for (std::size_t n = 0; n < sets.size(); ++n) {
+        isWall[n] = sets[n].facing == 0 && votes[regions.find(static_cast<std::int64_t>(n))] > 0;
+    }
+    return isWall;
+}
+
+/// Triangles to drop of those at one place: all but one that faces as more of them do; of walls of
+/// solids that touch all.
+/// \param gone  gets one of each wall
+std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
+                                      const std::vector<Triangle>& triangles,
+                                      std::vector<std::size_t>& gone) {
+    const std::vector<Doubled> sets = collectDoubled(points, triangles);
+    const std::vector<std::uint8_t> isWall = findWalls(sets);
+    std::vector<std::uint8_t> isDropped(triangles.size(), 1);
+    for (std::size_t n = 0; n < sets.size(); ++n) {
+        const Doubled& set = sets[n];
+        if (isWall[n] != 0) {
+            gone.push_back(set.numbers[0]);
             continue;
         }
-        for (std::size_t n = begin; n < end; ++n) {
-            if (facing * all[n].facing < 0) continue;
-            isDoubled[all[n].number] = 0;
-            break;
-        }
+        std::size_t keeps = 0;
+        while (set.facing * set.facings[keeps] < 0) ++keeps;
+        isDropped[set.numbers[keeps]] = 0;
     }
-    return isDoubled;
+    return isDropped;
 }
 
 /// \return  of what went with its counterpart, one of each
@@ -238,13 +299,10 @@ std::vector<LostPair> dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm,
         }
     }
     std::vector<std::size_t> gone;
-    std::vector<std::uint8_t> isDoubled = findDoubled(mesh.points, kept, false, gone);
-    if (std::find(isDoubled.begin(), isDoubled.end(), 0) == isDoubled.end()) {
-        isDoubled = findDoubled(mesh.points, kept, true, gone);  // of a sheet with two sides, one
-    }
+    const std::vector<std::uint8_t> isDropped = findDoubled(mesh.points, kept, gone);
     mesh.triangles.clear();
     for (std::size_t n = 0; n < kept.size(); ++n) {
-        if (isDoubled[n] == 0) mesh.triangles.push_back(kept[n]);
+        if (isDropped[n] == 0) mesh.triangles.push_back(kept[n]);
     }
     statistics.duplicateTriangles = std::ssize(kept) - std::ssize(mesh.triangles);
     if (mesh.triangles.empty()) throw InvalidInput("mend: no triangle has an area");
