@@ -13,6 +13,7 @@
 #include "adaptive/Parameters.h"
 #include "adaptive/full/MeshSurface.h"
 #include "repair/MeshParts.h"
+#include "repair/UnitScale.h"
 
 namespace adaptiso {
 namespace {
@@ -63,27 +64,6 @@ std::vector<Normal> detail::normalsFrom(const TriangleMesh& input, const Triangl
 }
 
 namespace {
-
-/// By a power of two, which changes no digit.
-void scale(TriangleMesh& mesh, int exponent) {
-    for (Vec3& p : mesh.points) {
-        p = {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
-    }
-}
-
-/// The power of two that brings a mesh of a very large or very small unit to about 1; else 0.
-/// Quadrics are fourth powers of lengths in single precision: of a mesh of 2^-24 small ones lose
-/// digits.
-int exponentTowardsOne(const TriangleMesh& mesh) {
-    constexpr int kFarFromOne = 12;
-    if (mesh.points.empty()) return 0;
-    const BoundingBox box = boundingBox(mesh);
-    const Vec3 extent = box.size();
-    const double largest = std::max({extent.x, extent.y, extent.z});
-    if (!std::isfinite(largest) || !(largest > 0)) return 0;
-    const int exponent = std::ilogb(largest);
-    return std::abs(exponent) > kFarFromOne ? -exponent : 0;
-}
 
 /// A distance in double precision is known to 1e-15 of the coordinates or so.
 void requireProvable(const TriangleMesh& mesh, const SimplifyOptions& options) {
@@ -149,10 +129,10 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
     if (!aims.maxErrorMm && !aims.maxTriangles && !aims.reduction) {
         throw InvalidInput("simplify: neither maxErrorMm nor maxTriangles nor reduction is set");
     }
-    const int exponent = exponentTowardsOne(mesh);
+    const int exponent = detail::exponentTowardsOne(mesh);
     if (exponent == 0) return simplifyNearOne(mesh, options);
     TriangleMesh scaled = mesh;
-    scale(scaled, exponent);
+    detail::scale(scaled, exponent);
     SimplifyOptions scaledOptions = options;
     if (options.maxErrorMm) {
         constexpr double kLeast = std::numeric_limits<double>::min(), kBeyondAll = 1e6;
@@ -160,7 +140,7 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
             std::clamp(std::ldexp(*options.maxErrorMm, exponent), kLeast, kBeyondAll);
     }
     Simplified result = simplifyNearOne(scaled, scaledOptions);
-    scale(result.mesh, -exponent);
+    detail::scale(result.mesh, -exponent);
     result.statistics.errorBoundMm = std::ldexp(result.statistics.errorBoundMm, -exponent);
     return result;
 }

@@ -220,6 +220,17 @@ TEST(Mend, KeepsASurfaceOfWhichAPartComesTwice) {
     }
 }
 
+TEST(Mend, ThinsNewSurface) {
+    // two faces of either box lie in one plane with the other's: 60,000 triangles by the lattice
+    const TriangleMesh boxes =
+        merged({cubeMesh({0, 0, 0}, {10, 10, 10}), cubeMesh({4, 0, 0}, {14, 10, 12})});
+    const Mended mended = mend(boxes, within(0.2));
+    expectMended(mended);
+    expectBounds(boxes, mended);
+    EXPECT_LT(mended.mesh.triangles.size(), 400u);
+    EXPECT_NEAR(enclosedVolume(mended.mesh), 1600, 5);
+}
+
 /// What a bound dissolves is listed, not only what lies in new cells.
 TEST(Mend, ListsAPlateThatIsTooThin) {
     TriangleMesh plate = cubeMesh({20, 0, 0}, {30, 10, 0.05});

@@ -19,9 +19,10 @@ namespace {
 class AdaptiveMethod {
 public:
     AdaptiveMethod(const FullSurface& full, const AdaptiveOptions& options,
-                   const ProgressCallback& progress)
+                   const ProgressCallback& progress, bool mends)
         : full_(full),
           progress_(progress),
+          mends_(mends),
           frame_(full.frame()),
           wanted_{options.maxTriangles, options.reduction},
           leavesNoise_(options.leavesNoise.value_or(!options.maxErrorMm && !wanted_.isGiven())),
@@ -30,7 +31,7 @@ public:
     }
 
     AdaptiveResult run() {
-        for (int run = 0; run < kMostRuns; ++run) {
+        for (int run = 0; run < (mends_ ? kMostRuns : 1); ++run) {
             report(run, 0);
             ++work_.runs;
             Attempt attempt = simplify(run > 0);
@@ -70,7 +71,7 @@ private:
         for (int n = 0; keepsDistances(attempt); ++n) {
             findCrossings(attempt);
             if (attempt.crossing.empty()) return true;
-            if (n < kMostMends && mendCrossings(attempt)) continue;
+            if (mends_ && n < kMostMends && mendCrossings(attempt)) continue;
             if (!takeBack(attempt, cornersOf(attempt.surface, attempt.crossing), reachMm)) break;
         }
         return false;
@@ -134,6 +135,7 @@ private:
     }
 
     void mend(Attempt& attempt) {
+        if (!mends_) return;
         SimplifiedSurface& surface = attempt.surface;
         SurfaceMender mender(surface, frame_, *boundMm_, full_.box());
         for (int idle = 0; isBeyond(attempt.error) && idle < kMostIdleMends;) {
@@ -155,6 +157,7 @@ private:
     /// was changed. \param reachMm  doubled each time
     /// \return false where all of the surface is the full one already, or too much has come back
     bool takeBack(Attempt& attempt, const std::vector<PlaceBeyond>& places, double& reachMm) {
+        if (!mends_ && ++takenBack_ > kMostTakenBack) return false;
         SimplifiedSurface& surface = attempt.surface;
         const std::ptrdiff_t points = std::ssize(surface.points);
         std::optional<SurfaceChanges> changes;
@@ -237,6 +240,7 @@ private:
         limits.maxDistanceMm =
             boundMm - std::max(least * boundMm,
                                std::min(kSlackVoxels * frame_.narrowestMm(), kSlackPart * boundMm));
+        if (!mends_) limits.maxDistanceMm = std::min(limits.maxDistanceMm, kUnmended * boundMm);
         if (boundMm_) {
             limits.webMm = isBoundLarge() ? (isCareful ? 2 : 1) * kWidestWeb * frame_.narrowestMm()
                                           : kWeb * *boundMm_;
@@ -263,11 +267,13 @@ private:
 
     const FullSurface& full_;
     const ProgressCallback& progress_;
+    bool mends_;
     const MetricFrame& frame_;
     WantedCount wanted_;
     bool leavesNoise_;
     std::optional<double> boundMm_;
     StarLimits shape_;
+    int takenBack_ = 0;         ///< times, where nothing is mended
     std::int64_t mayUndo_ = 0;  ///< below 0: too much has come back
     std::int64_t fewer_ = 0;    ///< triangles that a run aims below the wanted count
     AdaptiveWork work_;
@@ -277,8 +283,8 @@ private:
 }  // namespace
 
 AdaptiveResult simplifyWithin(const FullSurface& full, const AdaptiveOptions& options,
-                              const ProgressCallback& progress) {
-    return AdaptiveMethod(full, options, progress).run();
+                              const ProgressCallback& progress, bool mends) {
+    return AdaptiveMethod(full, options, progress, mends).run();
 }
 
 Extraction extractAdaptive(const VolumeView& volume, const BlockGrid& grid, BlockQuery query,

@@ -23,8 +23,11 @@ struct AdaptiveResult {
 };
 
 /// Simplifies any surface, with all that the adaptive method promises proved.
+/// \param mends  false: samples stay far within the bound, places beyond it go back to the full
+///               surface, and there is one run. Mending takes long where some triangles are
+///               thousands of times as long as others
 /// \throws InternalError when that can't be
 AdaptiveResult simplifyWithin(const FullSurface& full, const AdaptiveOptions& options,
-                              const ProgressCallback& progress);
+                              const ProgressCallback& progress, bool mends = true);
 
 }  // namespace adaptiso::detail

@@ -38,6 +38,11 @@ inline constexpr int kMostMends = 6, kMostIdleMends = 1;
 /// Part of the triangles that mending crossings may leave below a wanted count, which is to be met
 /// to as much; else the run is made again.
 inline constexpr double kCountMissed = 0.001;
+/// Part of the bound: samples stay as near where nothing is mended, so that few places lie beyond.
+inline constexpr double kUnmended = 0.25;
+/// Where nothing is mended, places go back to the full surface so often at most: what more brings
+/// back is mostly all.
+inline constexpr int kMostTakenBack = 4;
 /// A round of mending gains little when it leaves more than this part of the triangles with places
 /// beyond the bound.
 inline constexpr double kMended = 0.5;
@@ -105,6 +110,10 @@ inline constexpr double kFineCost = 0.13, kMiddleCost = 0.5;
 /// have a mean distance 20 % larger, and a gyroid by a bound of .4 mm has 8 % more triangles.
 inline constexpr std::int64_t kOnePatch = 8192;
 inline constexpr double kOnePatchSide = 128;
+/// Part of the triangles: where more are longer than that part of a cube's side, cubes are larger.
+/// Scans have none; in a mesh of long and short triangles the long ones would keep all that they
+/// touch.
+inline constexpr double kMostLong = 0.1, kLongPart = 0.25;
 /// Part of the vertices: where fewer are final, triangles between final ones stay in the patches,
 /// as to find them would take more time than it saves.
 inline constexpr double kFewFinal = 0.05;

@@ -21,6 +21,7 @@
 #include "mend/MendInput.h"
 #include "mend/MendRegion.h"
 #include "mend/NearnessProof.h"
+#include "mend/Thinning.h"
 #include "mend/WindingField.h"
 
 namespace adaptiso {
@@ -58,11 +59,15 @@ double checkedBound(const MendOptions& options, double diagonal) {
     return bound;
 }
 
-/// The largest power of 2 of which a cell's diagonal is within the bound.
+/// A cell's diagonal, as a part of the bound: the rest is what new surface may be thinned by.
+constexpr double kLatticePart = 0.75;
+
+/// The largest of three binary digits of which a cell's diagonal is within its part of the bound.
 double spacingFor(double boundMm) {
+    constexpr double kDigits = 8;
     int exponent = 0;
-    std::frexp(boundMm / std::sqrt(3.0), &exponent);
-    return std::ldexp(1, exponent - 1);
+    const double fraction = std::frexp(kLatticePart * boundMm / std::sqrt(3.0), &exponent);
+    return std::ldexp(std::floor(fraction * kDigits) / kDigits, exponent);
 }
 
 /// Planes of the lattice, a hundredth of a cell apart, must be told apart where the mesh lies.
@@ -114,23 +119,6 @@ std::vector<std::uint64_t> cellsOfFaults(const MendAssembly& assembly, const Men
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     return cells;
-}
-
-void dropTriangles(MendAssembly& assembly, const std::vector<std::uint8_t>& isDropped) {
-    std::size_t next = 0;
-    for (std::size_t t = 0; t < isDropped.size(); ++t) {
-        if (isDropped[t] != 0) continue;
-        assembly.mesh.triangles[next] = assembly.mesh.triangles[t];
-        assembly.source[next] = assembly.source[t];
-        assembly.cell[next] = assembly.cell[t];
-        assembly.origin[next] = assembly.origin[t];
-        ++next;
-    }
-    assembly.mesh.triangles.resize(next);
-    assembly.source.resize(next);
-    assembly.cell.resize(next);
-    assembly.origin.resize(next);
-    assembly.mesh = withoutUnusedPoints(std::move(assembly.mesh));
 }
 
 /// Drops pieces that are new, in part at least, and no thicker than a cell: along sheets that bound
@@ -245,6 +233,14 @@ void judgeHoles(MendAssembly& assembly, double maxHoleMm, bool leavesOpen,
     splitFans(assembly.mesh);
 }
 
+/// Cells with new surface, ascending.
+std::vector<std::uint64_t> cellsWithSurface(const MendAssembly& assembly) {
+    std::vector<std::uint64_t> cells = assembly.cell;
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return cells;
+}
+
 /// Counts the input's triangles that the result has, whole or in part.
 void countOrigins(const MendAssembly& assembly, const MendInput& input,
                   MendStatistics& statistics) {
@@ -322,9 +318,13 @@ Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
             result.mesh = mesh;
             return result;
         }
-        findBridges(input, lattice, boundMm, assembly);
+        const double thinMm = 0.99 * (boundMm - std::sqrt(3.0) * lattice.spacing());
+        findBridges(input, lattice, boundMm - thinMm, assembly);
+        const std::vector<std::uint64_t> cells = cellsWithSurface(assembly);
+        detail::thin(tree, thinMm, assembly);
         judgeHoles(assembly, maxHoleMm, options.leavesHolesOpen, statistics);
-        detail::proveDistances(input, tree, field, region, lattice, assembly, boundMm, statistics);
+        detail::proveDistances(input, tree, field, region, lattice, cells, assembly, boundMm,
+                               statistics);
         if (std::max(statistics.resultToInputMm, statistics.inputToResultMm) >
             statistics.maxErrorMm) {
             continue;

@@ -547,4 +547,21 @@ MendAssembly assemble(const MendInput& input, const MendRegion& region, const Wi
     return Assembler(input, region, field, lattice).run();
 }
 
+void dropTriangles(MendAssembly& assembly, const std::vector<std::uint8_t>& isDropped) {
+    std::size_t next = 0;
+    for (std::size_t t = 0; t < isDropped.size(); ++t) {
+        if (isDropped[t] != 0) continue;
+        assembly.mesh.triangles[next] = assembly.mesh.triangles[t];
+        assembly.source[next] = assembly.source[t];
+        assembly.cell[next] = assembly.cell[t];
+        assembly.origin[next] = assembly.origin[t];
+        ++next;
+    }
+    assembly.mesh.triangles.resize(next);
+    assembly.source.resize(next);
+    assembly.cell.resize(next);
+    assembly.origin.resize(next);
+    assembly.mesh = withoutUnusedPoints(std::move(assembly.mesh));
+}
+
 }  // namespace adaptiso::detail

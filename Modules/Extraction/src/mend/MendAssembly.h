@@ -29,7 +29,10 @@ struct MendAssembly {
     std::vector<std::uint32_t> innerOf;
     /// Cells to add to the region where the input could not be cut: the rest says nothing then.
     std::vector<std::uint64_t> trouble;
+    double thinnedMm = 0;  ///< new surface was within this of what it became, both ways
 };
+
+void dropTriangles(MendAssembly& assembly, const std::vector<std::uint8_t>& isDropped);
 
 MendAssembly assemble(const MendInput& input, const MendRegion& region, const WindingField& field,
                       const MendLattice& lattice);

@@ -180,6 +180,7 @@ void findBridges(const MendInput& input, const MendLattice& lattice, double boun
 
 void proveDistances(const MendInput& input, const AabbTree& tree, const WindingField& field,
                     const MendRegion& region, const MendLattice& lattice,
+                    const std::vector<std::uint64_t>& cellsWithSurface,
                     const MendAssembly& assembly, double boundMm, MendStatistics& statistics) {
     statistics.resultToInputMm = statistics.inputToResultMm = statistics.movedMm;
     TriangleMesh moved;  // of the result, what is not the input's
@@ -201,13 +202,11 @@ void proveDistances(const MendInput& input, const AabbTree& tree, const WindingF
         pieces.push_back({assembly.inner[n], assembly.innerOf[n]});
     }
     const std::int64_t innerPieces = std::ssize(pieces);
-    std::vector<std::uint64_t> cellsWithSurface = assembly.cell;
-    std::sort(cellsWithSurface.begin(), cellsWithSurface.end());
-    double upperMm = 0;
+    double upperMm = assembly.thinnedMm;  // of what was kept of cut triangles
     for (const std::uint64_t cell : region.cells()) {
-        // what lies in a cell with new surface is within a cell's diagonal of that
+        // what lies in a cell with new surface was within a cell's diagonal of that
         if (std::binary_search(cellsWithSurface.begin(), cellsWithSurface.end(), cell)) {
-            upperMm = std::sqrt(3.0) * lattice.spacing();
+            upperMm = std::sqrt(3.0) * lattice.spacing() + assembly.thinnedMm;
             continue;
         }
         const LatticePosition at = positionOf(cell);

@@ -20,8 +20,10 @@ void findBridges(const MendInput& input, const MendLattice& lattice, double boun
 
 /// Encloses both distances, and lists what of the input lies farther from the result than the
 /// bound. Adds statistics.movedMm to both.
+/// \param cellsWithSurface  that had new surface before it was thinned, ascending
 void proveDistances(const MendInput& input, const AabbTree& tree, const WindingField& field,
                     const MendRegion& region, const MendLattice& lattice,
+                    const std::vector<std::uint64_t>& cellsWithSurface,
                     const MendAssembly& assembly, double boundMm, MendStatistics& statistics);
 
 }  // namespace adaptiso::detail

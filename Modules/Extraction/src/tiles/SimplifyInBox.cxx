@@ -1,17 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <set>
+#include <optional>
 #include <unordered_map>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/SurfaceProof/HalfEdges.h"
-#include "adaptive/AdaptiveMethod.h"
-#include "adaptive/full/MeshSurface.h"
 #include "adaptive/mesh/MetricFrame.h"
-#include "repair/MeshParts.h"
+#include "repair/HashOfPoint.h"
+#include "repair/SimplifyKeeping.h"
 #include "tiles/TileGrid.h"
 
 namespace adaptiso {
@@ -55,25 +53,6 @@ BoundingBox detail::boxWithin(const BoundingBox& box, const ImageGeometry& geome
 }
 
 namespace {
-
-struct HashOfPoint {
-    std::size_t operator()(const Vec3& p) const {
-        std::size_t hash = 0;
-        for (int a = 0; a < 3; ++a) {
-            std::uint64_t bits = 0;
-            const double along = p[a] + 0.0;  // -0 is 0
-            std::memcpy(&bits, &along, sizeof bits);
-            hash = (hash ^ (bits ^ bits >> 29)) * 0x9E3779B97F4A7C15u;
-        }
-        return hash;
-    }
-};
-
-/// From its lowest corner on, so that one triangle has one name.
-Triangle rotated(const Triangle& t) {
-    const auto least = std::min_element(t.begin(), t.end()) - t.begin();
-    return {t[least], t[(least + 1) % 3], t[(least + 2) % 3]};
-}
 
 /// The triangles that a run may change, and those that it could come near: cubes of the lattice
 /// tell.
@@ -191,23 +170,14 @@ public:
     }
 
     SimplifiedPart run(double maxErrorMm) {
-        try {
-            MeshParts parts = takeApart(metric_, true);
-            if (parts.degenerate == 0 && parts.duplicate == 0) {
-                keepPoints(parts);
-                MeshSurface full(metric_, parts, maxErrorMm);
-                BoundingBox moved = within_;
-                moved.minimum = moved.minimum - parts.origin;
-                moved.maximum = moved.maximum - parts.origin;
-                full.stayIn(moved);
-                AdaptiveOptions aims;
-                aims.maxErrorMm = maxErrorMm;
-                AdaptiveResult made = simplifyWithin(full, aims, {});
-                std::vector<Normal> normals = normalsFrom(metric_, made.mesh);
-                SimplifiedPart part = taken(made, std::move(normals));
-                if (isGood(part)) return part;
+        std::optional<KeepingSimplified> made =
+            simplifyKeeping(metric_, isKept_, maxErrorMm, &within_);
+        if (made) {
+            SimplifiedPart part = inIndices(*made);
+            if (liesInBox(*made, part)) {
+                part.isKept = std::move(made->isKept);
+                return part;
             }
-        } catch (const InternalError&) {  // nothing could be proved
         }
         return {mesh_, isKept_, 0, true};
     }
@@ -222,64 +192,33 @@ private:
         }
     }
 
-    void keepPoints(MeshParts& parts) const {
-        parts.isKept.resize(parts.points.size(), 0);
-        for (std::size_t t = 0; t < isKept_.size(); ++t) {
-            if (isKept_[t] == 0) continue;
-            for (const std::uint32_t v : parts.triangles[t]) parts.isKept[v] = 1;
-        }
-    }
-
-    /// In indices again. Points that are those of the input become those to the bit.
-    SimplifiedPart taken(AdaptiveResult& made, std::vector<Normal> normals) {
-        std::unordered_map<Vec3, VertexId, HashOfPoint> inputAt;
-        inputAt.reserve(metric_.points.size());
-        for (std::size_t v = 0; v < metric_.points.size(); ++v) {
-            inputAt.emplace(metric_.points[v], static_cast<VertexId>(v));
-        }
+    /// Points that are those of the input become those to the bit.
+    SimplifiedPart inIndices(const KeepingSimplified& made) const {
         SimplifiedPart part;
         part.errorBoundMm = made.errorBoundMm;
-        part.mesh.triangles = std::move(made.mesh.triangles);
-        inputOf_.clear();
+        part.mesh.triangles = made.mesh.triangles;
         for (std::size_t v = 0; v < made.mesh.points.size(); ++v) {
-            const Vec3& p = made.mesh.points[v];
-            const auto known = inputAt.find(p);
-            const bool isKnown = known != inputAt.end();
-            inputOf_.push_back(isKnown ? known->second : kNew);
-            part.mesh.points.push_back(isKnown ? mesh_.points[known->second] : frame_.toIndex(p));
-            if (!mesh_.normals.empty()) {
-                part.mesh.normals.push_back(isKnown ? mesh_.normals[known->second] : normals[v]);
-            }
+            const std::int64_t known = made.inputPoint[v];
+            const bool isNew = known == KeepingSimplified::kNew;
+            part.mesh.points.push_back(isNew ? frame_.toIndex(made.mesh.points[v])
+                                             : mesh_.points[known]);
+            if (mesh_.normals.empty()) continue;
+            part.mesh.normals.push_back(isNew ? made.mesh.normals[v] : mesh_.normals[known]);
         }
         return part;
     }
 
-    /// Checks that kept triangles are there, and new ones lie in the box. Sets for each triangle
-    /// whether it was kept.
-    bool isGood(SimplifiedPart& part) const {
-        std::set<Triangle> kept;
-        for (std::size_t t = 0; t < isKept_.size(); ++t) {
-            if (isKept_[t] != 0) kept.insert(rotated(mesh_.triangles[t]));
-        }
-        std::size_t found = 0;
-        for (const auto& [a, b, c] : part.mesh.triangles) {
-            const Triangle old{inputOf_[a], inputOf_[b], inputOf_[c]};
-            const bool isOld = old[0] != kNew && old[1] != kNew && old[2] != kNew;
-            const bool isKept = isOld && kept.contains(rotated(old));
-            part.isKept.push_back(static_cast<std::uint8_t>(isKept));
-            found += static_cast<std::size_t>(isKept);
-        }
-        for (std::size_t v = 0; v < inputOf_.size(); ++v) {
-            if (inputOf_[v] != kNew) continue;
+    /// All new points do.
+    bool liesInBox(const KeepingSimplified& made, const SimplifiedPart& part) const {
+        for (std::size_t v = 0; v < part.mesh.points.size(); ++v) {
+            if (made.inputPoint[v] != KeepingSimplified::kNew) continue;
             const Vec3& p = part.mesh.points[v];
             for (int a = 0; a < 3; ++a) {
                 if (!(p[a] > box_.minimum[a] && p[a] < box_.maximum[a])) return false;
             }
         }
-        return found == kept.size();
+        return true;
     }
-
-    static constexpr VertexId kNew = -1;
 
     const TriangleMesh& mesh_;
     std::vector<std::uint8_t> isKept_;
@@ -287,7 +226,6 @@ private:
     BoundingBox box_;
     BoundingBox within_;
     TriangleMesh metric_;
-    std::vector<VertexId> inputOf_;  ///< of each point of the result
 };
 
 }  // namespace

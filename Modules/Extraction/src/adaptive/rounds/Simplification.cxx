@@ -31,6 +31,22 @@ std::optional<PatchCut> cutAround(const SimplifiedSurface& surface, const Metric
     return cut;
 }
 
+/// How often cubes are doubled until few triangles are long: those straddle a wall of every cut.
+int doublingsFor(const SimplifiedSurface& surface, const MetricFrame& frame) {
+    const auto all = static_cast<double>(surface.triangleCount());
+    int doublings = 0;
+    for (double side = Brick::kSide;; side *= 2, ++doublings) {
+        const auto isLong = std::count_if(
+            surface.triangles.begin(), surface.triangles.end(), [&](const auto& corners) {
+                BoundingBox box = BoundingBox::empty();
+                for (const std::uint32_t v : corners) box.add(frame.toIndex(surface.points[v]));
+                const Vec3 extent = box.size();
+                return std::max({extent.x, extent.y, extent.z}) > kLongPart * side;
+            });
+        if (static_cast<double>(isLong) <= kMostLong * all) return doublings;
+    }
+}
+
 /// All of it stays as it is, as noise at full resolution does.
 bool isAllFinal(const SurfaceState& surface) {
     return std::all_of(surface.states.begin(), surface.states.end(),
@@ -82,7 +98,9 @@ PatchCut Simplification::nextCut(const SimplifiedSurface& surface) {
     const auto size = std::find_if(kSizes.begin(), kSizes.end(), [&](const Cubes& cubes) {
         return limits_.maxCost <= cubes.mostCost * costUnit_;
     });
-    const std::int64_t side = size->side, shift = size->shift + (rounds_ % 2 == 1 ? side / 2 : 0);
+    if (!doublings_) doublings_ = doublingsFor(surface, frame_);
+    const std::int64_t side = size->side << *doublings_,
+                       shift = (size->shift << *doublings_) + (rounds_ % 2 == 1 ? side / 2 : 0);
     return {side, {shift, shift, shift}};
 }
 

@@ -57,9 +57,10 @@ private:
     PatchLimits limits_;
     double costUnit_;
     int rounds_ = 0;
-    int fits_ = 0;                ///< how many of the last rounds were with fits
-    std::int64_t collapsed_ = 0;  ///< in the last round
-    bool isTied_ = false;         ///< the last round made less than half of its collapses
+    std::optional<int> doublings_;  ///< of the cubes' sides
+    int fits_ = 0;                  ///< how many of the last rounds were with fits
+    std::int64_t collapsed_ = 0;    ///< in the last round
+    bool isTied_ = false;           ///< the last round made less than half of its collapses
 };
 
 }  // namespace adaptiso::detail
