@@ -24,7 +24,7 @@ namespace {
 using std::int64_t;
 
 constexpr int64_t kWordBits = 64;
-constexpr int64_t kGrain = int64_t{1} << 18;  // whole words of bits
+constexpr int64_t kMaskGrain = int64_t{1} << 18;  // whole words of bits
 
 /// Voxels that a mask takes, or finds taken.
 struct Claim {
@@ -56,9 +56,9 @@ Claim forEachInside(const VolumeView& image, const MaskSource& mask, const F& f)
     return dispatchPixelType(image, [&]<class S>(const TypedVolumeView<S>& view) {
         const S inside = insideOf(view, mask);
         const int64_t count = view.geometry.voxelCount();
-        std::vector<Claim> claims((count + kGrain - 1) / kGrain);
-        parallelForPieces(count, kGrain, [&](int64_t begin, int64_t end) {
-            Claim& claim = claims[begin / kGrain];
+        std::vector<Claim> claims((count + kMaskGrain - 1) / kMaskGrain);
+        parallelForPieces(count, kMaskGrain, [&](int64_t begin, int64_t end) {
+            Claim& claim = claims[begin / kMaskGrain];
             for (int64_t n = begin; n < end; ++n) {
                 const S sample = view.samples[n];
                 if (sample == S(0)) continue;

@@ -388,7 +388,9 @@ class Toolboxes(SharedFolderTest):
         self.model("ras")
         rows = self.path("ras/electrodes.tsv").read_text().splitlines()[1:]
         expected = {row.split("\t")[0]: np.array(row.split("\t")[1:], float) for row in rows}
-        np.testing.assert_allclose(expected["Cz"], CENTRE + np.array([0, 0, 92]), atol=3)
+        # halfway from nasion to inion, which is guessed 13 degrees above where it is on a ball
+        half = np.radians(13) / 2
+        np.testing.assert_allclose(expected["Cz"], CENTRE + 92 * np.array([0, np.sin(half), np.cos(half)]), atol=3)
         # .sfp says no unit: MNE takes its numbers for metres
         for name, scale in (("electrodes.sfp", 1), ("electrodes.elc", 1000)):
             montage = mne.channels.read_custom_montage(self.path("ras") / name, head_size=None)

@@ -16,10 +16,10 @@
 namespace adaptiso::meshio {
 namespace {
 
-using Cells = std::vector<std::string>;
+using CellTexts = std::vector<std::string>;
 
 /// The column of this name, in whatever case.
-std::optional<std::size_t> columnOf(const Cells& header, std::string_view name) {
+std::optional<std::size_t> columnOf(const CellTexts& header, std::string_view name) {
     const auto isIt = [&](const std::string& cell) { return lowerCase(cell) == name; };
     const auto found = std::ranges::find_if(header, isIt);
     if (found == header.end()) return std::nullopt;
@@ -38,7 +38,7 @@ struct Columns {
     Vec3 (*place)(const std::vector<double>&) = nullptr;
 };
 
-Columns columnsOf(const Cells& header) {
+Columns columnsOf(const CellTexts& header) {
     const auto require = [&](std::string_view name) {
         if (const auto column = columnOf(header, name)) return *column;
         unsupported("its first line names no column '" + std::string(name) + "'",
@@ -119,7 +119,7 @@ PointFile decodePointTable(std::string_view bytes) {
     const char separator = separatorOf(first);
     const auto cells = [&](std::string_view line) {
         if (separator == '\0') {
-            Cells words;
+            CellTexts words;
             ByteSource source(line);
             for (auto word = source.word(); !word.empty(); word = source.word()) {
                 words.emplace_back(word);
@@ -130,12 +130,12 @@ PointFile decodePointTable(std::string_view bytes) {
         if (!found) unsupported(linePlace(lines.number()) + "a quote is not closed", "close it");
         return *found;
     };
-    const Cells header = cells(first);
+    const CellTexts header = cells(first);
     const Columns columns = columnsOf(header);
     const std::size_t fewest = std::max(columns.name, std::ranges::max(columns.numbers)) + 1;
     bool hasComma = false, hasPoint = false;
     while (const auto line = lines.next()) {
-        const Cells row = cells(*line);
+        const CellTexts row = cells(*line);
         if (std::ranges::all_of(row, &std::string::empty)) continue;
         const auto isFilled = [](const std::string& cell) { return !cell.empty(); };
         const auto surplus = row.begin() + std::min(std::ssize(row), std::ssize(header));

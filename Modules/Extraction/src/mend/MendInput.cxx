@@ -200,7 +200,8 @@ std::vector<Doubled> collectDoubled(const std::vector<Vec3>& points,
     std::sort(all.begin(), all.end());
     std::vector<Doubled> sets;
     for (const Placed& placed : all) {
-        if (sets.empty() || sets.back().places != placed.places) sets.emplace_back().places = placed.places;
+        if (sets.empty() || sets.back().places != placed.places)
+            sets.emplace_back().places = placed.places;
         Doubled& set = sets.back();
         set.numbers.push_back(placed.number);
         set.facings.push_back(placed.facing);

@@ -71,7 +71,9 @@ public:
     void forgetFans() {
         std::vector<Index> firstAt;
         assignInHugePages(firstAt, points_.size());
-        for (Index v = 0; v < points_.size(); ++v) firstAt[v] = triangleAt(v);
+        for (std::size_t v = 0; v < firstAt.size(); ++v) {
+            firstAt[v] = triangleAt(static_cast<Index>(v));
+        }
         firstAt_ = std::move(firstAt);
         halfEdges_ = {};
     }
