@@ -323,9 +323,9 @@ Volume joinMasks(LabelsRun& run, std::string& format) {
     const std::vector<MaskSource>& masks = run.options.masks;
     MaskReader reader(run);
     const std::vector<std::size_t> order = orderOf(run.options.priority, masks, reader);
-    const auto [least, most] = std::ranges::minmax(masks, {}, &MaskSource::label);
+    const auto labels = std::ranges::minmax(masks, {}, &MaskSource::label);
     const auto fits = [&]<class T>(T) {
-        return std::in_range<T>(least.label) && std::in_range<T>(most.label);
+        return std::in_range<T>(labels.min.label) && std::in_range<T>(labels.max.label);
     };
     Volume map = fits(std::uint8_t{})    ? join<std::uint8_t>(run, order, reader)
                  : fits(std::uint16_t{}) ? join<std::uint16_t>(run, order, reader)

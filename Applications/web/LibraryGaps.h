@@ -90,7 +90,6 @@ auto projected(Less less, Projection projection) {
         return std::name(std::begin(range), std::end(range),       \
                          std::forward<Arguments>(arguments)...);   \
     }
-ADAPTISO_RANGE(adjacent_find)
 ADAPTISO_RANGE(copy)
 ADAPTISO_RANGE(fill)
 ADAPTISO_RANGE(is_sorted)
@@ -115,9 +114,14 @@ ADAPTISO_PREDICATE(find_if)
 ADAPTISO_PREDICATE(none_of)
 #undef ADAPTISO_PREDICATE
 
-template <class A, class B>
-constexpr bool equal(const A& a, const B& b) {
-    return std::equal(std::begin(a), std::end(a), std::begin(b), std::end(b));
+template <class A, class B, class Same = ranges::equal_to, class First = identity,
+          class Second = identity>
+constexpr bool equal(const A& a, const B& b, Same same = {}, First first = {}, Second second = {}) {
+    return std::equal(std::begin(a), std::end(a), std::begin(b), std::end(b),
+                      [&](const auto& one, const auto& other) {
+                          return std::invoke(same, std::invoke(first, one),
+                                             std::invoke(second, other));
+                      });
 }
 template <class Range>
 constexpr auto unique(Range&& range) {
@@ -167,9 +171,15 @@ constexpr auto minmax_element(Range&& range, Less less = {}, Projection projecti
         std::minmax_element(std::begin(range), std::end(range), gaps::projected(less, projection));
     return min_max_result<std::decay_t<decltype(low)>>{low, high};
 }
-template <class Range>
-constexpr auto minmax(const Range& range) {
-    const auto [low, high] = std::minmax_element(std::begin(range), std::end(range));
+template <class Range, class Same = ranges::equal_to, class Projection = identity>
+constexpr auto adjacent_find(Range&& range, Same same = {}, Projection projection = {}) {
+    return std::adjacent_find(std::begin(range), std::end(range),
+                              gaps::projected(same, projection));
+}
+template <class Range, class Less = ranges::less, class Projection = identity>
+constexpr auto minmax(const Range& range, Less less = {}, Projection projection = {}) {
+    const auto [low, high] =
+        std::minmax_element(std::begin(range), std::end(range), gaps::projected(less, projection));
     return min_max_result<std::decay_t<decltype(*low)>>{*low, *high};
 }
 template <class Range>

@@ -20,6 +20,7 @@ for option; do
     case $option in
         --quick)
             link=-O1
+            export ADAPTISO_WEB_QUICK=1
             unitTests=(testCore testImageIO testMeshIO testMeshQuality testSpanSpace)
             without=(-E '^(Extraction|AdaptiveClasses|Labels|HeadModel)$')
             ;;

@@ -130,7 +130,7 @@ function moreOf({ number, size, orientation, localizer, details, fault }: Series
 export const memoryOf = {
   /** \param edges  that the surface crosses  \param isSmoothed  the image is, into floats, before */
   mesh(facts: ImageFacts, edges: number, isByCount: boolean, isSmoothed: boolean): number {
-    const extraction = (isByCount ? 240 : 320) * edges, voxels = voxelsOf(facts);
+    const extraction = (isByCount ? 210 : 280) * edges, voxels = voxelsOf(facts);
     return kProgramBytes + facts.bytes + (isSmoothed ? Math.max(8 * voxels, 4 * voxels + extraction) : extraction);
   },
   /** \param faces  between voxels of different labels; thin sheets take up to three times as much */
