@@ -67,7 +67,7 @@ std::vector<fs::path> imagesOf(const fs::path& folder) {
 /// A folder of more files than that is taken for DICOM's, whose reader refuses it.
 constexpr std::int64_t kMostEntries = 200'000;
 
-/// Whether a folder is a DICOM series, by what its files and those of its subfolders hold.
+/// A folder, or one below it, holds a DICOM file, recognised by content.
 bool holdsDicom(const fs::path& folder) {
     std::int64_t entries = 0;
     std::error_code error, ignored;

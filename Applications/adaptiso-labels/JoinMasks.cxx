@@ -41,7 +41,7 @@ struct Claim {
     }
 };
 
-/// What voxels of a mask hold: what is asked for, or the first value but 0.
+/// The value of a mask's voxels: the requested one, or the first that is not 0.
 template <class S>
 S insideOf(const TypedVolumeView<S>& view, const MaskSource& mask) {
     if (mask.value) return static_cast<S>(*mask.value);

@@ -28,7 +28,7 @@ struct LabelId {
 /// "700000000000000123"
 std::string idText(const LabelId& id);
 
-/// Takes a number off the beginning of `text`. \return false where there is none of 64 bits
+/// Parses a 64-bit id at the beginning of `text` and removes it. \return false if there is none
 bool takeId(std::string_view& text, LabelId& id);
 
 /// The ids of a map's labels: these themselves where 32 bits hold them, else regions are numbered

@@ -11,7 +11,7 @@
 namespace adaptiso::labels {
 namespace {
 
-/// Takes a number off the beginning of `text`.
+/// Parses a label at the beginning of `text` and removes it.
 bool takeLabel(std::string_view& text, Label& label) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), label);
     if (error != std::errc()) return false;

@@ -38,7 +38,7 @@ struct MaskSource {
     std::optional<std::int64_t> value{};  ///< of its voxels; empty: the only one but 0
 };
 
-/// What became of a mask.
+/// Voxels of a mask, and how many of them it kept.
 struct MaskFate {
     std::string file;  ///< without folders
     Label label = 0;

@@ -38,7 +38,7 @@ Volume mergeLabels(Volume map, const std::vector<LabelMerge>& merges, const Labe
 LabelCensus mergeCounts(LabelCensus census, const std::vector<LabelMerge>& merges,
                         const LabelIds& ids);
 
-/// What a label goes by when those of `merges` are merged.
+/// The id of a label's region after merging.
 LabelId mergedId(const LabelId& id, const std::vector<LabelMerge>& merges);
 
 /// Looks up the names in --labels and --merge: those of --names, of tables beside the input or in

@@ -210,9 +210,9 @@ std::vector<Doubled> collectDoubled(const std::vector<Vec3>& points,
     return sets;
 }
 
-/// Of sets of which as many face either way: whether they are walls of solids that touch. Others
-/// are a surface given twice. Where such sets hang together they are walls if mostly an even number
-/// of other triangles meets at the edges where they end: two solids go on from there.
+/// Finds the walls of solids that touch. A set with as many triangles facing either way is a wall,
+/// or a surface given twice. Connected sets are walls if an even number of other sets meets at most
+/// of the edges where they end: two solids go on from there.
 std::vector<std::uint8_t> findWalls(const std::vector<Doubled>& sets) {
     struct EdgeOfSet {
         VertexId a, b;

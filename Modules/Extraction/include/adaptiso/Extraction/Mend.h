@@ -55,7 +55,7 @@ struct MendStatistics {
     double latticeMm = 0;               ///< spacing of the lattice of new surface; 0: none was made
     std::int64_t cells = 0;             ///< of the lattice where surface is new
     std::int64_t keptTriangles = 0;     ///< of the input, corners and all
-    std::int64_t cutTriangles = 0;      ///< of the input, of which a part is kept
+    std::int64_t cutTriangles = 0;      ///< of the input, cut where new surface begins
     std::vector<MendedPlace> filled;    ///< new surface that closes holes, the widest first
     std::vector<MendedPlace> leftOpen;  ///< holes wider than maxHoleMm
     std::vector<MendedPlace> inner;     ///< of the input, within the solid: dropped, widest first
