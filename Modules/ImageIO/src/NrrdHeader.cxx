@@ -12,6 +12,7 @@
 #include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderText.h"
+#include "Readers.h"
 #include "Samples.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/TextLines.h"
@@ -32,15 +33,24 @@ std::string canonicalName(std::string_view name) {
     return canonical == "centerings" ? "centers" : canonical;
 }
 
-/// Signs that turn a point of the named space into LPS.
-Mat3 spaceToLps(const fs::path& file, std::string_view name) {
-    const std::string space = lowerCase(name);
-    if (space == "left-posterior-superior" || space == "lps") return Mat3::diagonal(1, 1, 1);
-    if (space == "right-anterior-superior" || space == "ras") return Mat3::diagonal(-1, -1, 1);
-    if (space == "left-anterior-superior" || space == "las") return Mat3::diagonal(1, -1, 1);
-    refuse(file,
-           fmt::format("its space '{}' does not say where left and right are", printable(name)),
-           "use left-posterior-superior, right-anterior-superior or left-anterior-superior");
+/// Signs that turn a point of the header's space into LPS: of the named one, else of the given one.
+Mat3 spaceToLps(const fs::path& file, std::optional<std::string_view> name,
+                std::optional<ImageSpace> given) {
+    const auto named = [&](const Mat3& signs) {
+        if (!given) return signs;
+        refuse(file, fmt::format("its header names its space, {}", printable(*name)),
+               "leave --image-space out");
+    };
+    const std::string space = lowerCase(name.value_or(""));
+    if (space == "left-posterior-superior" || space == "lps") return named(toLps(ImageSpace::Lps));
+    if (space == "right-anterior-superior" || space == "ras") return named(toLps(ImageSpace::Ras));
+    if (space == "left-anterior-superior" || space == "las") return named(Mat3::diagonal(1, -1, 1));
+    if (given) return toLps(*given);
+    refuse(
+        file,
+        name ? fmt::format("its space '{}' does not say where left and right are", printable(*name))
+             : "it has space directions but no named space, so left and right are unknown",
+        "give --image-space lps or ras");
 }
 
 /// The texts of a list, in quotes or not: "mm" "" mm
@@ -197,7 +207,7 @@ void warnOfUnit(std::vector<Warning>& warnings) {
 
 /// Without a space: steps of 1 mm where none is said.
 ImageGeometry spacedGeometry(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes,
-                             std::vector<Warning>& warnings) {
+                             std::optional<ImageSpace> given, std::vector<Warning>& warnings) {
     const std::array<AxisStep, 3> steps = axisSteps(file, header, axes, false);
     const auto says = [](const AxisStep& step) { return step.spacing.has_value(); };
     const auto named =
@@ -221,11 +231,19 @@ ImageGeometry spacedGeometry(const fs::path& file, const NrrdHeader& header, con
     if (!hasAll) {
         warnings.push_back({"guessed-spacing", "no spacings: a spacing of 1 mm was used"});
     }
-    warnings.push_back({"guessed-orientation",
-                        fmt::format("no space field: orientation and position are unknown; {} "
-                                    "used along left, posterior, superior",
-                                    hasAll ? "the spacings alone were" : "a spacing of 1 mm was")});
-    return {axes.size, {}, Mat3::diagonal(spacing.x, spacing.y, spacing.z)};
+    if (given) {
+        warnings.push_back(
+            {"guessed-position", "no space field: the first voxel was put at 0, 0, 0"});
+    } else {
+        warnings.push_back(
+            {"guessed-orientation",
+             fmt::format(
+                 "no space field: orientation and position are unknown; {} used along left, "
+                 "posterior, superior (--image-space chooses)",
+                 hasAll ? "the spacings alone were" : "a spacing of 1 mm was")});
+    }
+    const Mat3 toLps = detail::toLps(given.value_or(ImageSpace::Lps));
+    return {axes.size, {}, toLps * Mat3::diagonal(spacing.x, spacing.y, spacing.z)};
 }
 
 /// Spacings or units of axes that have a direction say what that says, or nothing.
@@ -402,18 +420,12 @@ NrrdAxes axesOf(const fs::path& file, const NrrdHeader& header) {
 }
 
 ImageGeometry geometryOf(const fs::path& file, const NrrdHeader& header, const NrrdAxes& axes,
-                         std::vector<Warning>& warnings) {
+                         std::optional<ImageSpace> given, std::vector<Warning>& warnings) {
     const auto space = header.find("space");
-    if (!space) {
-        if (header.find("spacedirections") || header.find("spacedimension")) {
-            refuse(file,
-                   "it has space directions but no named space, so left and right are "
-                   "unknown",
-                   "add a 'space' field such as left-posterior-superior");
-        }
-        return spacedGeometry(file, header, axes, warnings);
+    if (!space && !header.find("spacedirections") && !header.find("spacedimension")) {
+        return spacedGeometry(file, header, axes, given, warnings);
     }
-    const Mat3 toLps = spaceToLps(file, *space);
+    const Mat3 toLps = spaceToLps(file, space, given);
     const double scale = spaceUnitMm(file, header.find("spaceunits").value_or("")).value_or(1);
     if (scale != 1) warnOfUnit(warnings);
 

@@ -11,6 +11,7 @@
 #include "ByteSource.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
 
 /// A NRRD file's text header, after teem.sourceforge.net/nrrd/format.html.
 namespace adaptiso::detail {
@@ -46,8 +47,10 @@ NrrdAxes axesOf(const std::filesystem::path& file, const NrrdHeader& header);
 /// The noun for the items along the axis of volumes: "volumes", or the layers of 3D Slicer's
 /// segments that overlap, with their names.
 std::string volumesNameOf(const NrrdHeader& header);
+/// \param given  the space where the header names none that tells left from right
 ImageGeometry geometryOf(const std::filesystem::path& file, const NrrdHeader& header,
-                         const NrrdAxes& axes, std::vector<Warning>& warnings);
+                         const NrrdAxes& axes, std::optional<ImageSpace> given,
+                         std::vector<Warning>& warnings);
 
 /// Samples that stand in a file as decimal numbers, apart by blanks or commas.
 ///

@@ -91,7 +91,7 @@ ReadVolume readNrrd(const fs::path& file, const ReadOptions& options) {
         fmt::format("is 4-D: it holds {} {}", axes.volumeCount, volumesNameOf(header)));
     layout.isInterleaved = axes.volumeAxis == 0U;
     std::vector<Warning> warnings;
-    const ImageGeometry geometry = geometryOf(file, header, axes, warnings);
+    const ImageGeometry geometry = geometryOf(file, header, axes, options.space, warnings);
     requireUsableGeometry(file, geometry);
 
     const NrrdEncoding encoding = encodingOf(file, header);

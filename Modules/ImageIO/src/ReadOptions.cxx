@@ -1,3 +1,5 @@
+#include <array>
+
 #include "adaptiso/ImageIO/ReadVolume.h"
 
 namespace adaptiso {
@@ -10,6 +12,8 @@ bool isSeries(std::string_view text) {
                            text.front() != '.';
     return hasDigits && text.size() <= 64;  // no UID is longer
 }
+
+constexpr std::array<std::string_view, 2> kSpaces{"lps", "ras"};  // as ImageSpace
 
 }  // namespace
 
@@ -43,6 +47,11 @@ const Options<ReadOptions>& readOptions() {
              .key = "time",
              .valueName = "N",
              .help = "Which time point of an OME-Zarr or N5 with several, counted from 0"}),
+        option<&ReadOptions::space>({.name = "image-space",
+                                     .key = "imageSpace",
+                                     .help = "Axes of an NRRD, OME-Zarr or N5 whose header does "
+                                             "not name them",
+                                     .words = kSpaces}),
         option<&ReadOptions::refusesMissingChunks>(
             {.name = "refuse-missing-chunks",
              .key = "refuseMissingChunks",

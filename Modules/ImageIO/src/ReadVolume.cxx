@@ -174,6 +174,10 @@ void requireOptionsOf(const std::string& format, const fs::path& input,
         throw InvalidInput("--level, --channel, --time, --refuse-missing-chunks: " + is +
                            ", and these are for Zarr and N5; leave them out");
     }
+    if (options.space && !hasChunks && format != "NRRD") {
+        throw InvalidInput("--image-space: " + is +
+                           ", and it is for NRRD, Zarr and N5; leave it out");
+    }
 }
 
 }  // namespace

@@ -23,6 +23,11 @@ std::optional<ReadVolume> readWithItk(const std::filesystem::path& file,
                                       const ReadOptions& options);
 bool hasItkReaders();
 
+/// Signs that turn a point of the space into LPS.
+constexpr Mat3 toLps(ImageSpace space) {
+    return space == ImageSpace::Lps ? Mat3::diagonal(1, 1, 1) : Mat3::diagonal(-1, -1, 1);
+}
+
 /// Format by the first bytes of a file (inflated, 1024 or all of them).
 bool looksLikeNifti(std::string_view head);
 bool looksLikeNrrd(std::string_view head);

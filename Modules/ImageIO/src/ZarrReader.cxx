@@ -110,7 +110,7 @@ ZarrCut cutOf(const fs::path& root, const ZarrArray& array, const ZarrScene& sce
 }
 
 ImageGeometry geometryOf(const fs::path& root, const ZarrArray& array, const ZarrCut& cut,
-                         ZarrScene& scene) {
+                         std::optional<ImageSpace> given, ZarrScene& scene) {
     ImageGeometry geometry;
     geometry.indexToPhysical = Mat3::diagonal(1, 1, 1);
     bool hasUnits = true, hasUnit = false;
@@ -139,9 +139,15 @@ ImageGeometry geometryOf(const fs::path& root, const ZarrArray& array, const Zar
     } else if (!scene.axes.empty() && !hasUnits) {
         scene.warnings.push_back({"guessed-unit", "its axes have no unit; millimetres were taken"});
     }
-    scene.warnings.push_back(
-        {"guessed-orientation",
-         "the format names no anatomical directions: x, y and z were taken for LPS"});
+    if (!given) {
+        scene.warnings.push_back(
+            {"guessed-orientation",
+             "the format names no anatomical directions: x, y and z were taken "
+             "for LPS (--image-space chooses)"});
+    }
+    const Mat3 toLps = detail::toLps(given.value_or(ImageSpace::Lps));
+    geometry.indexToPhysical = toLps * geometry.indexToPhysical;
+    geometry.originMm = toLps * geometry.originMm;
     return geometry;
 }
 
@@ -642,7 +648,7 @@ ZarrImage openZarrImage(const fs::path& folder, const ReadOptions& options) {
     }
     requireNoChunksBeyond(store, *array);
     ZarrCut cut = cutOf(folder, *array, scene, options);
-    const ImageGeometry geometry = geometryOf(folder, *array, cut, scene);
+    const ImageGeometry geometry = geometryOf(folder, *array, cut, options.space, scene);
     requireImageBytes(folder, geometry.size, array->type);
     requireUsableGeometry(folder, geometry);
     return {store, std::move(scene), std::move(*array), std::move(cut), geometry};

@@ -22,9 +22,10 @@ struct NrrdFile {
     }
 };
 
-ReadVolume read(const NrrdFile& file, const std::string& data = kSamples) {
+ReadVolume read(const NrrdFile& file, const std::string& data = kSamples,
+                const ReadOptions& options = {}) {
     const TempFolder folder;
-    return readVolume(writeFile(folder / "x.nrrd", file.header() + "\n" + data));
+    return readVolume(writeFile(folder / "x.nrrd", file.header() + "\n" + data), options);
 }
 
 void expectRefusedNrrd(const NrrdFile& file, std::string_view fault,
@@ -120,6 +121,29 @@ TEST(NrrdGeometry, RefusesSpacesThatDoNotNameTheSides) {
     expectRefusedNrrd(file, "space 'scanner-xyz'");
     file.space = "space dimension: 3\n";
     expectRefusedNrrd(file, "no named space");
+    expectRefusedNrrd(file, "--image-space lps or ras");
+}
+
+TEST(NrrdGeometry, TakesTheGivenSpaceWhereItNamesNone) {
+    for (const char* const space : {"space: scanner-xyz\n", "space dimension: 3\n"}) {
+        NrrdFile file;
+        file.space = space;
+        const ReadVolume lps = read(file, kSamples, {.space = ImageSpace::Lps});
+        expectNear(lps.volume.view().geometry().toPhysical({3, 2, 1}), {17, 27, 34}, 0);
+        const ReadVolume ras = read(file, kSamples, {.space = ImageSpace::Ras});
+        expectNear(ras.volume.view().geometry().toPhysical({3, 2, 1}), {-17, -27, 34}, 0);
+        EXPECT_TRUE(ras.warnings.empty());
+    }
+    NrrdFile file;
+    const TempFolder folder;
+    expectRefusal(writeFile(folder / "x.nrrd", file.header() + "\n" + kSamples),
+                  "leave --image-space out", {.space = ImageSpace::Ras});
+    file.space = file.directions = file.origin = "";
+    file.extra = "spacings: 2 3 4\n";
+    const ReadVolume spaced = read(file, kSamples, {.space = ImageSpace::Ras});
+    EXPECT_EQ(spaced.volume.view().geometry().indexToPhysical, Mat3::diagonal(-2, -3, 4));
+    ASSERT_EQ(spaced.warnings.size(), 1U);
+    EXPECT_EQ(spaced.warnings[0].code, "guessed-position");
 }
 
 TEST(NrrdGeometry, WithoutSpaceTakesSpacingsAndWarns) {

@@ -133,6 +133,12 @@ TEST_F(OmeZarrTest, WithoutScaleOrUnitTheyAreGuessedWithAWarning) {
         {"name": "y", "type": "space", "unit": "millimeter"},
         {"name": "x", "type": "space", "unit": "millimeter"}], "datasets": [{"path": "0"}]}]})");
     EXPECT_EQ(codes(), (std::vector<std::string>{"guessed-spacing", "guessed-orientation"}));
+    ReadOptions ras = at(1, 2);
+    ras.space = ImageSpace::Ras;
+    const ReadVolume read = readVolume(root_, ras);
+    EXPECT_EQ(read.volume.view().geometry().indexToPhysical, Mat3::diagonal(-1, -1, 1));
+    ASSERT_EQ(read.warnings.size(), 1U);
+    EXPECT_EQ(read.warnings[0].code, "guessed-spacing");
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import Warned, is_path, path, shown
-from ._options import checked, takes
+from ._options import checked, rows, takes
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -136,10 +136,10 @@ def _in_python(message: str) -> str:
     message = message.replace("--level, --channel, --time, --refuse-missing-chunks",
                               "level, channel, time, all_chunks")
     message = message.replace("; adaptiso-mesh --list-series prints what is known of each", "")
-    for option in ("series", "volume-index", "level", "channel", "time", "resample-slices"):
-        name = option.replace("-", "_")
-        message = re.sub(rf"--{option}\b", f"{name}= of adaptiso.read", message)
-    return message.replace("leave --refuse-missing-chunks out", "leave all_chunks=True out")
+    message = message.replace("leave --refuse-missing-chunks out", "leave all_chunks=True out")
+    for name, row in rows("read").items():
+        message = re.sub(rf"--{row['name']}\b", f"{name}= of adaptiso.read", message)
+    return message
 
 
 def _read_by_nibabel(name: str, volume_index: Optional[int], wants_more: bool) -> Image:

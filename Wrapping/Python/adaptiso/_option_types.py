@@ -1,4 +1,4 @@
-"""Types of keyword arguments, made from the library's rows of options. Do not edit."""
+"""Generated from the library's rows of options: types of keyword arguments. Do not edit."""
 
 from typing import Literal, Optional, TypedDict
 

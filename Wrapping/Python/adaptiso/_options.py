@@ -115,7 +115,7 @@ def takes(subject: str, only: Optional[List[str]] = None) -> Callable[[_Function
 
 def type_text() -> str:
     """The text of _option_types.py."""
-    lines = ['"""Types of keyword arguments, made from the library\'s rows of options. Do not edit."""',
+    lines = ['"""Generated from the library\'s rows of options: types of keyword arguments. Do not edit."""',
              "", "from typing import Literal, Optional, TypedDict"]
     for subject in _ROWS:
         name = subject.title().replace("_", "")

@@ -13,7 +13,7 @@ export interface RunRequest {
   folders: string[];
 }
 
-/** Options of reading an image, by the programs' names: { "volume-index": 2 }. */
+/** Options of reading an image, by the programs' names. */
 export type ReadOptions = Readonly<Record<string, number | string>>;
 
 export interface OpenRequest {

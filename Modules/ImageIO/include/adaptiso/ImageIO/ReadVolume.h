@@ -14,6 +14,9 @@
 
 namespace adaptiso {
 
+/// A frame of physical coordinates that a file's own may be meant in.
+enum class ImageSpace { Lps, Ras };
+
 struct ReadOptions {
     /// The DICOM folder's image group to read: its number (from 1) in the list that a
     /// refusal prints and listSeries() returns, or its SeriesInstanceUID. Unset: the folder must
@@ -27,6 +30,10 @@ struct ReadOptions {
     /// The resolution of an OME-Zarr to read, 0 the finest (unset), and its channel and
     /// time points, counted from 0. Unset: it must hold one.
     std::optional<std::int64_t> level{}, channel{}, timePoint{};
+
+    /// The space of an NRRD, Zarr or N5 that names none. Unset: an NRRD with space directions is
+    /// refused, the others are taken for LPS with a warning.
+    std::optional<ImageSpace> space{};
 
     /// A chunk of a Zarr that is not there (ENOENT) holds the fill value, by its specification, and
     /// a warning gives their number. Set: they are refused.
@@ -43,7 +50,7 @@ struct ReadOptions {
 };
 
 /// Rows of what is read of an image: --series, --volume-index, --level, --channel, --time,
-/// --refuse-missing-chunks and --resample-slices.
+/// --image-space, --refuse-missing-chunks and --resample-slices.
 const Options<ReadOptions>& readOptions();
 
 /// A scan as read: the samples in the file's own pixel type, where they lie, and what a user
@@ -80,7 +87,8 @@ private:
 /// The geometry comes from the format's own header fields, never from a reader's guess:
 ///   NIfTI      sform if its code > 0, else qform, else the voxel size alone with a warning (as
 ///              nibabel); xyzt_units metre and micron become mm; RAS -> LPS
-///   NRRD       space LPS, RAS or LAS; without a space, spacings alone with a warning
+///   NRRD       space LPS, RAS or LAS; without a space, spacings alone with a warning;
+///              options.space stands in
 ///   MetaImage  Offset, TransformMatrix (its rows are the axes), ElementSpacing; LPS
 ///   MGH        Mdc and c_ras; RAS -> LPS
 ///   DICOM      slices, frames (each with its own position) and mosaic tiles sorted along the
@@ -90,9 +98,10 @@ private:
 ///   Zarr       a folder, version 2 or 3, or N5: one array (1 mm, with a warning), an OME-Zarr of
 ///              0.4 or 0.5, or N5's group of s0, s1, ... with their pixelResolution and
 ///              downsamplingFactors: scale and translation of the level, then of the image, units
-///              to mm; x, y and z taken for LPS, with a warning. Chunks raw or packed by gzip,
-///              zlib, zstd, blosc, lz4, with crc32c, in shards or not; all else is refused by name.
-///              Each is read once; beside the image, each thread holds one, packed and unpacked
+///              to mm; x, y and z taken for LPS, with a warning, or for options.space. Chunks raw
+///              or packed by gzip, zlib, zstd, blosc, lz4, with crc32c, in shards or not; all else
+///              is refused by name. Each is read once; beside the image, each thread holds one,
+///              packed and unpacked
 ///   others     as ITK's readers place them, and plug-ins of ITK_AUTOLOAD_PATH, with a warning
 ///              where they do not know it (Documentation/Formats.md lists them); in a child
 ///              process, where libadaptisoItkIO.so is installed
@@ -120,8 +129,9 @@ private:
 ///         is guessed.
 /// \throws ChoiceNeeded  several volumes or series, of which the options choose none
 /// \pre  not called from two threads at once for DICOM (GDCM's message switches are global).
-/// \throws InvalidInput  options.series and the input is no DICOM, or options.level, channel,
-///         timePoint or refusesMissingChunks and it is no Zarr or N5
+/// \throws InvalidInput  options.series and the input is no DICOM, options.level, channel,
+///         timePoint or refusesMissingChunks and it is no Zarr or N5, or options.space and it
+///         is neither of these nor an NRRD
 /// \throws FileError  as well when GDCM's decoder crashes or takes more than it may: 15 s
 ///         and 1 s for each MB of input, 1 GiB and 64 bytes for each byte (ReadOptions::sandbox)
 /// \post no process or file of this call's is left
