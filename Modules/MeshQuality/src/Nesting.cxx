@@ -21,7 +21,7 @@ namespace adaptiso {
 namespace {
 
 constexpr std::int64_t kVertexGrain = 4096;
-constexpr std::int64_t kMostRayTests = 1 << 24, kLeastRayTests = 1 << 21;
+constexpr std::int64_t kMostRayTests = 1 << 27;  // of all vertices; beyond, some are asked alone
 
 /// The mesh with each triangle once, where all of it is there twice and so has no inside by the
 /// even-odd rule; none where it is not.
@@ -175,12 +175,29 @@ std::vector<VertexId> findSpokesmen(const Surface& surface, const Surface& other
     return spokesmen;
 }
 
+/// Tests of rays and triangles that the sides of all spokesmen take, by some of them.
+double expectedRayTests(const Surface& surface, const Surface& other,
+                        const std::vector<VertexId>& spokesmen) {
+    constexpr std::int64_t kSome = 64;
+    std::vector<VertexId> asked;
+    for (VertexId v = 0; v < std::ssize(spokesmen); ++v) {
+        if (spokesmen[v] == v) asked.push_back(v);
+    }
+    const std::int64_t count = std::ssize(asked), some = std::min(count, kSome);
+    std::int64_t tests = 0;
+    for (std::int64_t n = 0; n < some; ++n) {
+        other.inside.sideOf(surface.mesh.points[asked[n * count / some]], &tests);
+    }
+    return some == 0 ? 0 : static_cast<double>(tests * count) / static_cast<double>(some);
+}
+
 /// The side of every vertex; empty: not used, or not known as rays pass too many triangles.
 std::vector<std::optional<Side>> findSides(const Surface& surface, const Surface& other,
                                            const std::vector<VertexId>& spokesmen) {
     const std::int64_t count = std::ssize(spokesmen);
-    const std::int64_t most =  // for each kVertexGrain vertices
-        std::max(kLeastRayTests, kMostRayTests / (count / kVertexGrain + 1));
+    const bool isInVain = expectedRayTests(surface, other, spokesmen) > kMostRayTests;
+    const std::int64_t ofPiece = 2 * kMostRayTests / (count / kVertexGrain + 1),
+                       most = isInVain ? 1 << 18 : std::max<std::int64_t>(1 << 21, ofPiece);
     std::vector<std::optional<Side>> sides(spokesmen.size());
     parallelForPieces(count, kVertexGrain, [&](std::int64_t begin, std::int64_t end) {
         std::int64_t tests = 0;
