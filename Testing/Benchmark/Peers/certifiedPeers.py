@@ -5,12 +5,13 @@
 
 The surface is that of marching cubes, its largest piece with cavities filled. Those that take a bound get --bound,
 the others as many triangles as adaptiso-mesh makes within it. All run in turn, in processes of their own. Seconds are
-the processor's (user and system), medians; of adaptiso-mesh with reading, proof, checks and writing, of the
-others without reading and writing. CGAL runs once; what FOLDER has of it stays. A table in Markdown goes to standard
-output, all figures to FOLDER/certified.json.
+the processor's (user and system), medians; of adaptiso-mesh with reading, proof, checks and writing, of niimath with
+reading and writing, of the others without. CGAL runs once; what FOLDER has of it stays. A table in Markdown goes to
+standard output, all figures to FOLDER/certified.json.
 
-manifold runs where FOLDER has it (`npm install manifold-3d`), VTK 9.3 and SurfaceNets where ROOT is a Debian 13 with
-python3-vtk9 (`debootstrap --variant=minbase trixie ROOT`, then apt-get in a chroot); needs root.
+manifold and niimath, which has nii2mesh's chain, run where FOLDER has them (`npm install manifold-3d @niivue/niimath`),
+VTK 9.3 and SurfaceNets where ROOT is a Debian 13 with python3-vtk9 (`debootstrap --variant=minbase trixie ROOT`, then
+apt-get in a chroot); needs root.
 """
 import argparse
 import json
@@ -30,7 +31,8 @@ BUILD = HERE.parents[2] / "build" / "benchmark"
 PEERS, PROGRAMS = BUILD / "Testing" / "Benchmark" / "Peers", BUILD / "bin"
 MODERN = "peerVtkPython.py"
 CGAL = "CGAL, edge collapse in an envelope"
-FORMATS = {CGAL: "vtp", "manifold": "off"}  # of their outputs
+NIIMATH = "niimath -mesh (nii2mesh), as WebAssembly"
+FORMATS = {CGAL: "vtp", "manifold": "off", NIIMATH: "off"}  # of their outputs
 
 
 def call(*command, **where):
@@ -51,7 +53,7 @@ class Bench:
         self.scan, self.iso = arguments.scan, arguments.iso
         self.count = None
         self.full = self.path("full.ply")
-        self.mesh("--method", "mc", "-o", self.full)
+        self.full_count = self.mesh("--method", "mc", "-o", self.full)["triangles"]
 
     def path(self, name):
         return self.folder / name
@@ -90,6 +92,12 @@ class Bench:
         if not full.exists():
             self.mesh("--method", "mc", "-o", full)
         return call("node", HERE / "peerManifold.mjs", full.name, self.bound, out.name, cwd=self.folder)
+
+    def niimath(self, out):
+        image = self.path("image.nii")
+        nibabel.load(self.scan).to_filename(image)
+        return call("node", HERE / "peerNiimath.mjs", image.name, self.iso, self.count / self.full_count, out.name,
+                    cwd=self.folder)
 
     def modern(self, method, given, *arguments):
         """By VTK of Debian 13."""
@@ -135,8 +143,10 @@ def methods(bench):
     yield "adaptiso-mesh, from the image", bench.ours, lambda out: bench.ours(out, 2)
     yield "simplify() of this library", bench.library, lambda out: bench.library(out, 2)
     yield CGAL, bench.cgal, None
-    if bench.path("node_modules").exists():
+    if bench.path("node_modules/manifold-3d").exists():
         yield "manifold", bench.manifold, None
+    if bench.path("node_modules/@niivue/niimath").exists():
+        yield NIIMATH, bench.niimath, None
     yield "vtkQuadricDecimation", bench.quadric, None
     if bench.root:
         yield "vtkQuadricDecimation, Debian 13", bench.modern_quadric, None
@@ -186,7 +196,7 @@ def main():
             row.update({key: made[key] for key in ("version", "triangles") if key in made})
             print(f"{row['name']}: {made}", file=sys.stderr, flush=True)
     for row in rows:
-        says_frame = row["name"] != "manifold" and "Debian 13" not in row["name"]
+        says_frame = FORMATS.get(row["name"]) != "off" and "Debian 13" not in row["name"]
         frame = () if says_frame else ("--input-coordinates", "ras")  # as the full surface's
         row.update(bench.defects(row["out"]), **bench.distances(row["out"], frame))
         for key in ("one", "two", "out"):
