@@ -1,8 +1,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -117,16 +115,11 @@ std::string bytesIn(const fs::path& path) {
 /// OpenMEEG's text: a line for each electrode. \return  column by column
 std::vector<double> gainOfText(const std::string& text, std::size_t rows) {
     std::vector<double> byRow;
-    const char* const end = text.data() + text.size();
-    for (const char* at = text.data(); at != end;) {
-        if (std::isspace(static_cast<unsigned char>(*at)) != 0) {
-            ++at;
-            continue;
-        }
-        double value = std::nan("");
-        at = std::from_chars(at, end, value).ptr;
+    char* end = nullptr;
+    for (const char* at = text.c_str();; at = end) {
+        const double value = std::strtod(at, &end);
+        if (end == at) break;
         byRow.push_back(value);
-        if (std::isnan(value)) break;
     }
     std::vector<double> gain;
     const std::size_t columns = byRow.size() / rows;
