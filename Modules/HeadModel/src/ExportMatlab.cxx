@@ -151,12 +151,13 @@ void writeLeadField(const LeadField& field, const std::filesystem::path& path,
         names.push_back(electrode.name);
         places.push_back(electrode.point);
     }
-    writeMatFile(
-        path, listOf(matColumns("gain", names.size(), field.gain), matText("gain_unit", "V/(A m)"),
-                     matText("reference", "none"), matText("solver", field.solver),
-                     matTexts("label", names), matPoints("elecpos", places),
-                     matPoints("pos", field.places), matPoints("ori", field.directions),
-                     matText("unit", "mm"), matText("coordsys", fieldTripCoordsys(frame))));
+    // gain last, so that reading it back notices what is cut off
+    writeMatFile(path, listOf(matText("gain_unit", "V/(A m)"), matText("reference", "none"),
+                              matText("solver", field.solver), matTexts("label", names),
+                              matPoints("elecpos", places), matPoints("pos", field.places),
+                              matPoints("ori", field.directions), matText("unit", "mm"),
+                              matText("coordsys", fieldTripCoordsys(frame)),
+                              matColumns("gain", names.size(), field.gain)));
 }
 
 std::vector<double> readLeadFieldGain(const std::filesystem::path& path) {
