@@ -280,6 +280,7 @@ int runBem(const BemOptions& options) {
     const SubjectFolder subjectFolder(options);
     checkOutputs(options);
     requireMesher(options.tetrahedra);
+    requireSolver(options.model);
     readElectrodes(run);
 
     const BemHooks hooks{
@@ -302,6 +303,9 @@ int runBem(const BemOptions& options) {
         });
     }
     run.takeWarnings();
+    if (run.model.hasModel() && !options.model.leadField.empty() && !run.failsStrict()) {
+        run.stage("solve", [&] { solveLeadField(run); });
+    }
     write(run);
     return run.end(options.isDryRun ? "all is done" : options.output.string() + " is written");
 }

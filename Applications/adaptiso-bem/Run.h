@@ -55,6 +55,14 @@ void readSources(BemRun& run);
 /// \throws FileError
 void chooseTkRas(BemRun& run);
 
+/// Checks that who is to make the lead field is installed. \throws UsageError
+void requireSolver(const BemModelOptions& options);
+
+/// Has the lead field made of the model's files, in a folder of its own. Fills the model's.
+/// \pre a model, with electrodes and sources
+/// \throws FileError  it fails; a file that is named holds what it printed
+void solveLeadField(BemRun& run);
+
 /// The report, as README.md describes it: schema "adaptiso-bem/1". Holds file names without
 /// folders. A number that is not known, or not finite, is null.
 std::string jsonReport(const BemRun& run);

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -222,8 +223,9 @@ void declareOutput(CLI::App& app, BemOptions& options) {
     output.text(
         "-s,--subject", "NAME", options.subject,
         "A subject of FreeSurfer: the .surf files are put into its folder bem as well. Without an "
-        "image --t1 is its mri/T1.mgz, --brain-mask its mri/brainmask.mgz; -o is "
-        "SUBJECT/adaptiso-bem by default");
+        "image --t1 is its mri/T1.mgz, --brain-mask its mri/brainmask.mgz (--aseg its mri/aseg.mgz "
+        "without that, or with --layers 4), --pial its surf/?h.pial and, for --lead-field, "
+        "--sources its surf/?h.white; -o is SUBJECT/adaptiso-bem by default");
     output.choice<OpenMeegUnit>(
         "--units", options.files.unit,
         {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}},
@@ -284,6 +286,10 @@ void declareSources(CLI::App& app, BemOptions& options) {
                "Dipoles along the normals of the cortex (lh.white rh.white): dipoles.txt for "
                "OpenMEEG, sources-src.fif for MNE");
     group.rows(sourceOptions(), options.model.sources);
+    group.choice<std::string>(
+        "--lead-field", options.model.leadField, {{"mne", "mne"}, {"openmeeg", "openmeeg"}},
+        "Potentials of these dipoles at the electrodes, by this program, which must be installed: "
+        "lead-field.mat (V/(A m), without a reference), and lead-field-fwd.fif of MNE");
 }
 
 void declareToolboxes(CLI::App& app, BemOptions& options) {
@@ -329,10 +335,25 @@ void takeSubject(BemOptions& options) {
         return;
     }
     options.t1 = folder / "mri" / "T1.mgz";
-    const std::filesystem::path mask = folder / "mri" / "brainmask.mgz";
-    std::error_code error;
-    if (options.brainMask.empty() && options.aseg.empty() && std::filesystem::exists(mask, error)) {
-        options.brainMask = mask;
+    using Paths = std::vector<std::filesystem::path>;
+    const auto take = [&](auto& option, const Paths& files) {
+        std::error_code error;
+        for (const auto& file : files) {
+            if (!option.empty() || !std::filesystem::exists(folder / file, error)) return;
+        }
+        if constexpr (std::is_same_v<decltype(option), Paths&>) {
+            for (const auto& file : files) option.push_back(folder / file);
+        } else {
+            option = folder / files.front();
+        }
+    };
+    if (options.aseg.empty()) take(options.brainMask, {"mri/brainmask.mgz"});
+    if (options.brainMask.empty() || options.model.boundaries.withBrain) {
+        take(options.aseg, {"mri/aseg.mgz"});
+    }
+    take(options.pial, {"surf/lh.pial", "surf/rh.pial"});
+    if (!options.model.leadField.empty() && !options.model.sources.gridMm) {
+        take(options.sources, {"surf/lh.white", "surf/rh.white"});
     }
 }
 
@@ -344,8 +365,10 @@ void checkCombinations(const CLI::App& app, const BemOptions& options) {
     BemRequest request{
         {}, options.tissues, options.surfaces.size(), options.sources.size(), options.preset};
     for (const std::string& name : givenOptions(app)) request.given.insert(name.substr(2));
-    if (!options.t1.empty()) request.given.insert("t1");  // of --subject
+    // of --subject
+    if (!options.t1.empty()) request.given.insert("t1");
     if (!options.brainMask.empty()) request.given.insert("brain-mask");
+    if (!options.sources.empty()) request.given.insert("sources");
     const std::string fault =
         bemFault(options.model, request, [](const std::string& name) { return "--" + name; });
     require(fault.empty(), fault);

@@ -21,7 +21,8 @@ except ImportError as missing:
     sys.exit(77)
 
 sys.path.insert(0, str(SOURCE / "Testing" / "Benchmark"))
-import solveSpheres  # noqa: E402  (the analytic potentials and MNE's)
+import layeredSphere  # noqa: E402  (the analytic potentials)
+import solveSpheres  # noqa: E402  (and MNE's)
 from bemSpheres import CENTRE, NAMES, RADII, scanner_points  # noqa: E402
 
 BEM = str(BIN / "adaptiso-bem")
@@ -271,12 +272,13 @@ class Toolboxes(SharedFolderTest):
         x, y, z = CENTRE
         electrodes = ("--montage", "10-20", "--nasion", f"{x},{y + 92},{z}", f"--left-ear={x - 92},{y},{z}",
                       f"--right-ear={x + 92},{y},{z}")
+        solved = ("--montage", "10-10", *electrodes[2:], "--lead-field", "mne")
         arguments = {
             "ras": (*self.ARGUMENTS, *self.FORMATS, *electrodes, "--subjects-dir", "subjects", "--subject", "anna"),
             "again": (*self.ARGUMENTS, *self.FORMATS, *electrodes),
-            "cortex": (*self.ARGUMENTS[:9], 642, *self.ARGUMENTS[10:], *electrodes, "--fif", "--sources", "rh.white",
+            "cortex": (*self.ARGUMENTS[:9], 642, *self.ARGUMENTS[10:], *solved, "--fif", "--sources", "rh.white",
                        "lh.white", "--source-count", 100),
-            "grid": (*self.ARGUMENTS[:9], 642, *self.ARGUMENTS[10:], *electrodes, "--fif", "--source-grid", 20),
+            "grid": (*self.ARGUMENTS[:9], 642, *self.ARGUMENTS[10:], *solved, "--coordinates", "lps", "--source-grid", 20),
             "lps": (*self.ARGUMENTS, "--fieldtrip", "--simnibs", "--coordinates", "lps"),
             "guessed": (*self.ARGUMENTS, "--brainstorm"),
             "meg": (*self.ARGUMENTS[:4], "--meg", "--vertices", 300, "--voxel", 2, "--fieldtrip"),
@@ -414,27 +416,31 @@ class Toolboxes(SharedFolderTest):
             place = np.array([side * 41, 0, 0])  # tkRAS begins in the image's middle, 1 mm beside CENTRE
             mne.write_surface(self.path(f"{name}.white"), 33 * points + place - 1, triangles, overwrite=True)
 
-    def lead_field(self, name, bem=None):
-        """EEG, of the model's own files, as MNE makes it."""
-        folder = self.path(name)
-        bem = bem or mne.make_bem_solution(mne.read_bem_surfaces(folder / "bem.fif"))
-        montage = mne.channels.read_custom_montage(folder / "electrodes.elc", head_size=None)
-        info = mne.create_info(montage.ch_names, 100, "eeg").set_montage(montage)
-        return mne.make_forward_solution(info, folder / "head-mri-trans.fif", folder / "sources-src.fif", bem,
-                                         meg=False, verbose=False)
-
-    def assert_as_on_paper(self, name, most_rdm):
-        """The lead field beside MNE's spheres with the same sources."""
-        sphere = mne.make_sphere_model((0, 0, 0), 0.092, relative_radii=(80 / 92, 86 / 92, 1), verbose=False,
-                                       sigmas=self.CONDUCTIVITIES)
-        fields = []
-        for bem in (None, sphere):
-            field = self.lead_field(name, bem)["sol"]["data"]
-            fields.append(field - field.mean(axis=0))
-        sizes = [np.linalg.norm(field, axis=0) for field in fields]
-        rdm = np.linalg.norm(fields[0] / sizes[0] - fields[1] / sizes[1], axis=0)
+    def assert_as_on_paper(self, name, most_rdm, sign=(1, 1, 1)):
+        """--lead-field beside the analytic series: a row for each electrode by name (73, Nz among them), a column for each
+        dipole of dipoles.txt. Returns it, and MNE's own file"""
+        from scipy.io import loadmat
+        field = loadmat(self.path(name) / "lead-field.mat", simplify_cells=True)
+        rows = [row.split("\t")[0] for row in (self.path(name) / "electrodes.tsv").read_text().splitlines()[1:]]
+        self.assertEqual((len(rows), list(field["label"])), (73, rows))
+        self.assertEqual([field[key] for key in ("gain_unit", "reference", "unit", "solver")],
+                         ["V/(A m)", "none", "mm", f"MNE-Python {mne.__version__}"])
+        dipoles = self.dipoles(name).reshape(-1, 6)
+        np.testing.assert_allclose(np.hstack([field["pos"], field["ori"]]), dipoles, atol=1e-5)
+        layers = layeredSphere.Layers((0.080, 0.086, 0.092), self.CONDUCTIVITIES)
+        centre = np.array(sign) * CENTRE
+        truth = layeredSphere.potentials(layers, (dipoles[:, :3] - centre) / 1000, dipoles[:, 3:],
+                                         (field["elecpos"] - centre) / 1000, terms=120)
+        rdm, mag = layeredSphere.rdm_and_mag(field["gain"].T, truth)
+        print(f"{name}: RDM {rdm.mean():.4f} MAG {np.median(mag):.4f}")
         self.assertLess(rdm.mean(), most_rdm)
-        self.assertLess(abs(np.median(sizes[0] / sizes[1]) - 1), 0.1)  # MNE's own MAG at 642 vertices: .91 to .93
+        self.assertLess(abs(np.median(mag) - 1), 0.1)  # MNE's own MAG at 642 vertices: .91 to .93
+        forward = mne.read_forward_solution(self.path(name) / "lead-field-fwd.fif")
+        self.assertEqual(forward["sol"]["row_names"], rows)
+        report = json.loads((self.path(name) / "report.json").read_text())
+        self.assertEqual((report["leadField"]["solver"], report["leadField"]["dipoles"]), (field["solver"], len(dipoles)))
+        self.assertGreater(report["seconds"]["solve"], 0)
+        return field["gain"], forward
 
     def dipoles(self, name):
         return np.loadtxt(self.path(name) / "dipoles.txt").reshape(-1, 2, 3)
@@ -472,7 +478,9 @@ class Toolboxes(SharedFolderTest):
         np.testing.assert_allclose(self.dipoles("cortex")[:, 0], used, atol=1e-3)  # scanner RAS
         normals = np.concatenate([s["nn"][s["vertno"]] for s in sources])
         np.testing.assert_allclose(self.dipoles("cortex")[:, 1], normals, atol=1e-5)
-        self.assert_as_on_paper("cortex", 0.05)
+        gain, forward = self.assert_as_on_paper("cortex", 0.05)
+        fixed = mne.convert_forward_solution(forward, force_fixed=True, use_cps=False)
+        np.testing.assert_allclose(fixed["sol"]["data"], gain, atol=1e-4 * np.abs(gain).max())  # the file has floats
 
     def test_sources_on_a_grid_make_a_lead_field(self):
         self.model("grid")
@@ -491,10 +499,13 @@ class Toolboxes(SharedFolderTest):
         scanner = mne.transforms.apply_trans(space["mri_ras_t"], space["rr"][space["vertno"]])
         np.testing.assert_allclose(1000 * scanner, used, atol=1e-3)
         dipoles = self.dipoles("grid")
-        np.testing.assert_allclose(dipoles[::3, 0], used, atol=1e-3)
+        np.testing.assert_allclose(dipoles[::3, 0], used * (-1, -1, 1), atol=1e-3)  # LPS
         np.testing.assert_allclose(dipoles[:3, 1], np.eye(3))
         mne.write_source_spaces(self.path("again-src.fif"), mne.SourceSpaces([space]))
-        self.assert_as_on_paper("grid", 0.04)
+        gain, forward = self.assert_as_on_paper("grid", 0.04, (-1, -1, 1))
+        # MNE's are along the head's axes, ours along those of LPS
+        np.testing.assert_allclose(forward["sol"]["data"] * np.tile((-1, -1, 1), space["nuse"]), gain,
+                                   atol=1e-4 * np.abs(gain).max())
 
     def test_head_to_mri_is_the_landmarks_frame(self):
         self.model("ras")

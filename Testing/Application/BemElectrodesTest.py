@@ -2,9 +2,15 @@
 
 import json
 import math
+import os
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
 
 from support import BAD_INPUT, USAGE, main
-from bemSupport import RADII, BemTest, read_tri
+from bemSupport import BEM, RADII, BemTest, read_tri
 
 SKIN = RADII[-1]
 LANDMARKS = ("--nasion", f"0,{SKIN},0", f"--left-ear=-{SKIN},0,0", "--right-ear", f"{SKIN},0,0")
@@ -298,6 +304,93 @@ class Sources(BemTest):
         self.bem(*labels, "-o", "model")
         self.fails(BAD_INPUT, "--sources: both surfaces are the same; give one for each hemisphere", *labels, "--sources",
                    "model/inner_skull.surf", "model/inner_skull.surf", "-o", "m")
+
+
+OPENMEEG = """#!/bin/sh
+# stands for OpenMEEG, which Debian lacks: takes the files that it takes, numbers its gain
+echo "${0##*/} $*" >>"$MARK"
+echo "${0##*/} version 2.5.16 compiled at noon"
+for last; do :; done
+while [ $# -gt 1 ]; do
+    case $1 in -*) ;; *) [ -s "$1" ] || exit 4 ;; esac
+    shift
+done
+case $last in
+h2em.mat) [ -z "$STOPS" ] || { echo 'no such interface' >&2; exit 3; } ;;
+hm_inv.mat) [ -z "$WAITS" ] || { echo $$ >"$WAITS"; exec sleep 600; } ;;
+gain.txt) awk -v n="$(wc -l <dipoles.txt)" '{for (c = 1; c <= n; ++c) printf "%g%s", -NR - c / 1e4, c < n ? "\\t" : "\\n"}' \
+    electrodes.txt >gain.txt; exit ;;
+esac
+echo made >"$last"
+"""
+
+
+class OpenMeeg(BemTest):
+    """--lead-field openmeeg by programs that stand for it."""
+
+    def setUp(self):
+        super().setUp()
+        for name in ("om_assemble", "om_minverser", "om_gain"):
+            self.path(name).write_text(OPENMEEG)
+            self.path(name).chmod(0o755)
+        self.path("scratch").mkdir()
+        self.command = (*self.labels(), "--montage", "10-20", *LANDMARKS, "--source-grid", "30", "--lead-field", "openmeeg", "-o",
+                        "model")
+        self.environment = {**os.environ, "PATH": f"{self.folder}:/usr/bin:/bin", "TMPDIR": str(self.path("scratch")),
+                            "MARK": str(self.path("mark")), "STOPS": "", "WAITS": ""}
+
+    def test_its_gain_is_the_lead_field(self):
+        try:
+            from scipy.io import loadmat
+        except ImportError:
+            self.skipTest("needs python3-scipy")
+        self.bem(*self.command, "--threads", "2", env=self.environment)
+        self.assertEqual(self.path("mark").read_text().splitlines(), [
+            "om_assemble -HM model.geom model.cond hm.mat", "om_minverser hm.mat hm_inv.mat",
+            "om_assemble -DSM model.geom model.cond dipoles.txt dsm.mat",
+            "om_assemble -H2EM model.geom model.cond electrodes.txt h2em.mat",
+            "om_gain -EEG hm_inv.mat dsm.mat h2em.mat gain.txt"])
+        field = loadmat(self.path("model/lead-field.mat"), simplify_cells=True)
+        rows = [line.split("\t")[0] for line in (self.path("model/electrodes.tsv")).read_text().splitlines()[1:]]
+        dipoles = [tuple(map(float, line.split())) for line in self.path("model/dipoles.txt").read_text().splitlines()]
+        self.assertEqual((list(field["label"]), field["solver"]), (rows, "OpenMEEG 2.5.16"))
+        self.assertEqual(field["gain"].shape, (21, len(dipoles)))
+        self.assertAlmostEqual(field["gain"][4, 6], -5.0007)
+        self.assertEqual((self.report()["leadField"]["electrodes"], self.report()["options"]["leadField"]), (21, "openmeeg"))
+        self.assertFalse(list(self.path("scratch").iterdir()))
+
+    def test_failures_leave_no_model_and_a_log(self):
+        done = self.run_bem(*self.command, env={**self.environment, "STOPS": "1"})
+        self.assertEqual(done.returncode, BAD_INPUT)
+        line = done.stderr.splitlines()[-1]  # after warnings
+        log = re.search(r"^adaptiso-bem: --lead-field openmeeg: om_assemble made no lead field \(exit code 3, 'no such interface'\); what it "
+                        r"printed is in (\S+)$", line).group(1)
+        self.assertIn("no such interface", Path(log).read_text())
+        self.assertEqual([str(path) for path in self.path("scratch").iterdir()], [log])
+        self.assertFalse(self.path("model").exists())
+
+    def test_a_signal_leaves_neither_files_nor_the_solver(self):
+        mark = self.path("waits")
+        process = subprocess.Popen([BEM, *self.command], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   env={**self.environment, "WAITS": str(mark)})
+        while process.poll() is None and not (mark.exists() and mark.read_text().endswith("\n")):
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, -signal.SIGINT)
+        self.assertEqual(list(self.path("scratch").iterdir()), [])
+        self.assertFalse(self.path("model").exists())
+        with self.assertRaises(ProcessLookupError):
+            os.kill(int(mark.read_text()), 0)
+
+    def test_what_is_missing_is_told_before_the_work(self):
+        at = self.command.index("--montage")
+        self.fails(USAGE, r"--lead-field needs --electrodes or --montage", *self.command[:at], *self.command[-6:])
+        self.fails(USAGE, r"--lead-field needs --sources or --source-grid", *self.command[:-6], *self.command[-4:])
+        self.path("om_gain").unlink()
+        done = self.run_bem("--t1", "missing.nii", *self.command[-6:], "--montage", "10-20", env=self.environment)
+        self.assertEqual(done.returncode, USAGE)
+        self.assertIn("--lead-field openmeeg: om_gain is not installed", done.stderr)
 
 
 if __name__ == "__main__":

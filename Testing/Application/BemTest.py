@@ -1,5 +1,6 @@
 """adaptiso-bem as users call it: inputs, outputs, promises, failures."""
 
+import importlib.util
 import json
 import math
 import os
@@ -385,6 +386,20 @@ class Output(BemTest):
         write_nifti(mri / "brainmask.mgz", head(radii=(30, 31, 32)))  # BemClientsTest takes a right one
         self.fails(BAD_INPUT, r"--brain-mask subjects/anna/mri/brainmask\.mgz", "-s", "anna", "-d", "subjects", *QUICK)
         self.assertFalse(bem.exists())
+        surf = self.path("subjects/anna/surf")
+        surf.mkdir()
+        solved = ("-s", "anna", "-d", "subjects", "--montage", "10-20", "--lead-field", "mne", *QUICK)
+        for name in ("lh.pial", "rh.pial", "lh.white"):
+            (surf / name).write_text("no surface")
+        self.fails(BAD_INPUT, r"subjects/anna/surf/lh\.pial", "-s", "anna", "-d", "subjects", *QUICK)
+        (mri / "aseg.mgz").write_text("no image")
+        self.fails(BAD_INPUT, r"subjects/anna/mri/aseg\.mgz", "-s", "anna", "-d", "subjects", "--layers", 4, *QUICK)
+        (mri / "brainmask.mgz").unlink()
+        self.fails(BAD_INPUT, r"subjects/anna/mri/aseg\.mgz", "-s", "anna", "-d", "subjects", *QUICK)
+        if importlib.util.find_spec("mne"):
+            self.fails(USAGE, "--lead-field needs --sources", *solved)
+            (surf / "rh.white").write_text("no surface")
+            self.fails(BAD_INPUT, r"subjects/anna/mri/aseg\.mgz", *solved)
         self.bem(*self.labels(), "-s", "anna", env={**os.environ, "SUBJECTS_DIR": "subjects"})
         for name in NAMES:
             self.assertEqual((bem / f"{name}.surf").read_bytes(),

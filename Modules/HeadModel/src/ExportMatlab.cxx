@@ -143,4 +143,25 @@ TriangleMesh readBrainstormSurface(const std::filesystem::path& path) {
     });
 }
 
+void writeLeadField(const LeadField& field, const std::filesystem::path& path,
+                    CoordinateFrame frame) {
+    std::vector<std::string> names;
+    std::vector<Vec3> places;
+    for (const NamedPoint& electrode : field.electrodes) {
+        names.push_back(electrode.name);
+        places.push_back(electrode.point);
+    }
+    // gain last, so that reading it back notices what is cut off
+    writeMatFile(path, listOf(matText("gain_unit", "V/(A m)"), matText("reference", "none"),
+                              matText("solver", field.solver), matTexts("label", names),
+                              matPoints("elecpos", places), matPoints("pos", field.places),
+                              matPoints("ori", field.directions), matText("unit", "mm"),
+                              matText("coordsys", fieldTripCoordsys(frame)),
+                              matColumns("gain", names.size(), field.gain)));
+}
+
+std::vector<double> readLeadFieldGain(const std::filesystem::path& path) {
+    return naming(path, [&] { return valuesOf(*readMatVariable(path, "gain")); });
+}
+
 }  // namespace adaptiso

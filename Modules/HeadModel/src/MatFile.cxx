@@ -55,8 +55,12 @@ MatVariable matNumber(const std::string& name, double value) {
     return matrix(name, 1, 1, {value});
 }
 
+MatVariable matColumns(const std::string& name, std::size_t rows, std::span<const double> values) {
+    return matrix(name, rows, values.size() / rows, {values.begin(), values.end()});
+}
+
 MatVariable matRow(const std::string& name, std::span<const double> values) {
-    return matrix(name, 1, values.size(), {values.begin(), values.end()});
+    return matColumns(name, 1, values);
 }
 
 MatVariable matPoints(const std::string& name, std::span<const Vec3> points) {

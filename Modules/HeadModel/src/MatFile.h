@@ -20,6 +20,8 @@ using MatVariable = std::unique_ptr<matvar_t, MatFree>;
 
 MatVariable matText(const std::string& name, std::string text);
 MatVariable matNumber(const std::string& name, double value);
+/// Values column by column, `rows` to each.
+MatVariable matColumns(const std::string& name, std::size_t rows, std::span<const double> values);
 /// One row.
 MatVariable matRow(const std::string& name, std::span<const double> values);
 /// V x 3

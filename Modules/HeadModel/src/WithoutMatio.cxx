@@ -33,4 +33,12 @@ TriangleMesh readBrainstormSurface(const std::filesystem::path& path) {
     refuse(path);
 }
 
+void writeLeadField(const LeadField&, const std::filesystem::path& path, CoordinateFrame) {
+    refuse(path);
+}
+
+std::vector<double> readLeadFieldGain(const std::filesystem::path& path) {
+    refuse(path);
+}
+
 }  // namespace adaptiso

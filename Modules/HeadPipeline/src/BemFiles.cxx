@@ -32,6 +32,25 @@ void writeBemFiles(const BemModel& model, const BemFileOptions& options, const s
     writeText(place("README.md"), bemReadme(model, options, maker));
 }
 
+std::vector<std::vector<std::string>> openMeegCommands(bool hasDipoles, bool hasElectrodes) {
+    std::vector<std::vector<std::string>> commands{
+        {"om_assemble", "-HM", "model.geom", "model.cond", "hm.mat"},
+        {"om_minverser", "hm.mat", "hm_inv.mat"}};
+    const auto assemble = [&](const char* what, const char* points, const char* made) {
+        commands.push_back({"om_assemble", what, "model.geom", "model.cond", points, made});
+    };
+    if (hasDipoles) assemble("-DSM", "dipoles.txt", "dsm.mat");
+    if (hasElectrodes) assemble("-H2EM", "electrodes.txt", "h2em.mat");
+    if (!hasDipoles || !hasElectrodes) return commands;
+    commands.push_back({"om_gain", "-EEG", "hm_inv.mat", "dsm.mat", "h2em.mat", "gain.txt"});
+    return commands;
+}
+
+AffineTransform toMriCoordinates(const BemModel& model, const BemFileOptions& options) {
+    const BemFileSource source{model, options};
+    return source.into(source.mriFrame()) * inverse(source.into(options.frame));
+}
+
 void checkBemFiles(const fs::path& folder, const BemFileOptions& options, BemModel& model) {
     const BemFileSource source{model, options};
     for (const BemFileRow& row : bemFileRows()) {

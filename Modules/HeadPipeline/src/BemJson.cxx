@@ -157,6 +157,16 @@ Json tetrahedraJson(const BemModel& model) {
     return json;
 }
 
+Json leadFieldJson(const BemModel& model) {
+    if (!model.leadField) return nullptr;
+    const std::size_t rows = model.electrodes->points.size();
+    return {{"solver", model.leadField->solver},
+            {"electrodes", rows},
+            {"dipoles", model.leadField->gain.size() / rows},
+            {"unit", "V/(A m)"},
+            {"reference", nullptr}};
+}
+
 }  // namespace
 
 Json bemInputJson(const BemModel& model) {
@@ -192,6 +202,7 @@ Json bemOptionsJson(const BemModelOptions& options) {
                             {"scalp", options.conductivities.scalp}};
     json["inputCoordinates"] = options.inputCoordinates;
     json.update(valuesJson(sourceOptions(), options.sources));
+    json["leadField"] = options.leadField.empty() ? Json(nullptr) : Json(options.leadField);
     return json;
 }
 
@@ -222,6 +233,7 @@ Json bemModelJson(const BemModel& model) {
             {"electrodes", electrodesJson(model)},
             {"headPoints", headPointsJson(model)},
             {"sources", sourcesJson(model)},
+            {"leadField", leadFieldJson(model)},
             {"plausibility", notesJson(inLps(model.plausibility))},
             {"findings", findings}};
 }

@@ -10,6 +10,7 @@
 #include "adaptiso/Core/Bytes.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/HeadModel/ExportMatlab.h"
 #include "adaptiso/HeadModel/ExportOpenMeeg.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/PointFiles.h"
@@ -248,16 +249,30 @@ BemFileKind besaFile(const Source& source, const Files& files) {
 
 // Sources
 
-BemFileKind dipolesText(const Source& source, const Files& files) {
+struct Dipoles {
+    std::vector<Vec3> places, directions;
+};
+
+Dipoles dipolesOf(const Source& source) {
     const AffineTransform move = source.into(source.options.frame);
-    Table table{6};
+    Dipoles dipoles;
     for (const SourceSpace& space : source.model.sources->spaces) {
         for (const std::int64_t point : space.used) {
             for (const Vec3& direction : space.orientations(point)) {
-                table.add(unitOf(source) * move(space.surface.points[point]));
-                table.add(space.grid ? direction : move.linear * direction);
+                dipoles.places.push_back(move(space.surface.points[point]));
+                dipoles.directions.push_back(space.grid ? direction : move.linear * direction);
             }
         }
+    }
+    return dipoles;
+}
+
+BemFileKind dipolesText(const Source& source, const Files& files) {
+    const auto [places, directions] = dipolesOf(source);
+    Table table{6};
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        table.add(unitOf(source) * places[n]);
+        table.add(directions[n]);
     }
     return tableFile(source, files, table, sixDecimals);
 }
@@ -332,6 +347,35 @@ BemFileKind sourcesFile(const Source& source, const Files& files) {
             const bool areSame =
                 std::equal(written.begin(), written.end(), wanted.begin(), wanted.end(), isSame);
             return faultUnless(areSame, source, "its sources are others");
+        });
+}
+
+BemFileKind leadFieldFile(const Source& source, const Files& files) {
+    return oneFile(
+        files,
+        [=](const fs::path& path) {
+            const BemLeadField& made = *source.model.leadField;
+            LeadField field{made.solver, made.gain, {}, {}, {}};
+            for (const NamedPoint& p : pointsIn(source.options.frame, source)) {
+                if (p.kind == PointKind::Electrode) field.electrodes.push_back(p);
+            }
+            Dipoles dipoles = dipolesOf(source);
+            field.places = std::move(dipoles.places);
+            field.directions = std::move(dipoles.directions);
+            writeLeadField(field, path, source.options.frame);
+        },
+        [=](const fs::path& path) {
+            return faultUnless(readLeadFieldGain(path) == source.model.leadField->gain, source,
+                               "its numbers are others");
+        });
+}
+
+BemFileKind forwardFile(const Source& source, const Files& files) {
+    return oneFile(
+        files, [=](const fs::path& path) { writeText(path, source.model.leadField->forward); },
+        [=](const fs::path& path) {
+            return faultUnless(bytesOf(path) == source.model.leadField->forward, source,
+                               "its bytes are others");
         });
 }
 
@@ -412,6 +456,14 @@ std::vector<BemFileRow> pointFileRows() {
          electrodesText},
         {"dipoles.txt", {"dipoles.txt"}, kHasSources, dipolesText},
         {"sources-src.fif", {"sources-src.fif"}, kHasSources, sourcesFile},
+        {"lead-field.mat",
+         {"lead-field.mat"},
+         [](const Source& s) { return s.model.leadField.has_value(); },
+         leadFieldFile},
+        {kFiffForward,
+         {kFiffForward},
+         [](const Source& s) { return s.model.leadField && !s.model.leadField->forward.empty(); },
+         forwardFile},
         {"head.sfp", {"head.sfp"}, [](const Source& s) { return s.options.writesBesa; }, besaFile},
         {"head.msh",
          {"head.msh"},

@@ -1,5 +1,6 @@
 #include "BemReadme.h"
 
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -77,6 +78,13 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
         rows += "| `head-mri-trans.fif` | MNE | head coordinates, by nasion and ears, to " + mri +
                 "; metres |\n";
     }
+    if (model.leadField) {
+        rows += std::string("| `lead-field.mat`") +
+                (model.leadField->forward.empty() ? "" : ", `lead-field-fwd.fif` (MNE)") +
+                " | MATLAB, SciPy | potentials at `label`, `elecpos` (rows) of unit dipoles at "
+                "`pos` along `ori` (columns), V/(A m), without a reference, by " +
+                model.leadField->solver + "; " + frame + "; millimetres |\n";
+    }
     if (options.writesBesa) rows += "| `head.sfp` | BESA | " + frame + "; millimetres |\n";
     if (model.electrodes && !model.electrodes->all().empty()) {
         rows +=
@@ -134,12 +142,10 @@ std::string openMeegText(const BemModel& model, const std::string& frame, const 
     const bool hasElectrodes = model.electrodes && !model.electrodes->all().empty();
     std::string text =
         "\nOpenMEEG (not in Debian; openmeeg.github.io), in this folder:\n```sh\n"
-        "om_check_geom -g model.geom\n"
-        "om_assemble -HM model.geom model.cond hm.mat\n"
-        "om_minverser hm.mat hm_inv.mat\n";
-    if (hasDipoles) text += "om_assemble -DSM model.geom model.cond dipoles.txt dsm.mat\n";
-    if (hasElectrodes) text += "om_assemble -H2EM model.geom model.cond electrodes.txt h2em.mat\n";
-    if (hasDipoles && hasElectrodes) text += "om_gain -EEG hm_inv.mat dsm.mat h2em.mat gain.mat\n";
+        "om_check_geom -g model.geom\n";
+    for (const auto& command : openMeegCommands(hasDipoles, hasElectrodes)) {
+        text += joined(command, " ") + "\n";
+    }
     text += "```\n";
     const std::string where = "; in " + frame + ", " + unit;
     if (hasDipoles) {
@@ -150,7 +156,7 @@ std::string openMeegText(const BemModel& model, const std::string& frame, const 
         text += "`electrodes.txt` has a line `x y z` for each electrode" + where + ".\n";
     }
     if (hasDipoles && hasElectrodes) {
-        text += "`gain.mat` has a row for each electrode and a column for each dipole.\n";
+        text += "`gain.txt` has a row for each electrode and a column for each dipole.\n";
     } else {
         text += std::string("A gain matrix also takes ") +
                 (hasDipoles ? "" : "dipoles (`--sources`, or a line `x y z ox oy oz` for each)") +

@@ -74,6 +74,10 @@ std::int64_t BemSources::count() const {
     return count;
 }
 
+std::int64_t BemSources::dipoles() const {
+    return count() * (spaces.front().grid ? 3 : 1);
+}
+
 void placeSources(BemModel& model, const BemHooks& hooks) {
     const SourceOptions& options = model.options.sources;
     if (model.cortex.empty() && !options.gridMm) return;

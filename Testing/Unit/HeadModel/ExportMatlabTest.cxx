@@ -55,6 +55,18 @@ TEST_F(ExportMatlab, BrainstormsSurfaceComesBackTurnedRound) {
     EXPECT_EQ(read.triangles, layers_[0].mesh.triangles);
 }
 
+TEST_F(ExportMatlab, LeadFieldComesBackColumnByColumn) {
+    const LeadField field{
+        "MNE-Python 1.3.0",
+        {1e2, -2.5, 3, 4, 5, 1.0 / 3},
+        {{"Nz", PointKind::Electrode, {1, 2, 3}}, {"Cz", PointKind::Electrode, {4, 5, 6}}},
+        std::vector<Vec3>(3),
+        std::vector<Vec3>(3, {0, 0, 1})};
+    writeLeadField(field, folder_ / "l.mat", CoordinateFrame::Lps);
+    EXPECT_EQ(readLeadFieldGain(folder_ / "l.mat"), field.gain);  // doubles, to the bit
+    EXPECT_THROW(readLeadFieldGain(folder_ / "missing.mat"), FileError);
+}
+
 TEST_F(ExportMatlab, TheSameModelGivesTheSameBytes) {
     for (const char* name : {"a.mat", "b.mat"}) {
         writeFieldTripModel(layers_, folder_ / name, CoordinateFrame::Ras);

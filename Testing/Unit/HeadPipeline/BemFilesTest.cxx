@@ -44,6 +44,9 @@ BemModel wholeModel(double movedMm, bool onGrid) {
         for (Vec3& p : sources.spaces.front().surface.points) p += middle;
         sources.spaces.front().grid->originMm += middle;
     }
+    const auto numbers = static_cast<std::size_t>(2 * sources.dipoles());
+    model.leadField =
+        BemLeadField{"MNE", std::vector<double>(numbers, movedMm), std::to_string(movedMm)};
     TetrahedralMesh& mesh = model.tetrahedra.emplace().mesh;
     mesh.points = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10}, {10, 10, 10}};
     for (Vec3& p : mesh.points) p += middle;

@@ -8,6 +8,7 @@
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/PointFiles.h"
 
 namespace adaptiso {
 
@@ -52,5 +53,22 @@ void writeBrainstormSurface(const TriangleMesh& metres, const std::filesystem::p
 
 /// Reads a file of writeBrainstormSurface(), counter-clockwise, without normals. \throws FileError
 TriangleMesh readBrainstormSurface(const std::filesystem::path& path);
+
+/// Potentials of unit dipoles at electrodes, without a reference.
+struct LeadField {
+    std::string solver;        ///< "MNE-Python 1.3.0"
+    std::vector<double> gain;  ///< V/(A m), a row an electrode; column by column, one a dipole
+    std::vector<NamedPoint> electrodes;    ///< mm
+    std::vector<Vec3> places, directions;  ///< of the dipoles, mm
+};
+
+/// Writes a lead field for MATLAB and SciPy: gain, gain_unit, reference, solver and, by FieldTrip's
+/// names, label and elecpos of the rows, pos and ori of the columns, their unit and coordsys.
+/// \throws FileError  the file can't be written
+void writeLeadField(const LeadField& field, const std::filesystem::path& path,
+                    CoordinateFrame frame);
+
+/// The gain of writeLeadField()'s file. \throws FileError
+std::vector<double> readLeadFieldGain(const std::filesystem::path& path);
 
 }  // namespace adaptiso

@@ -31,6 +31,7 @@ struct BemFileOptions {
 inline constexpr const char* kFiffModel = "bem.fif";
 inline constexpr const char* kFiffDenseHead = "head-dense.fif";
 inline constexpr const char* kFiffSparseHead = "head-sparse.fif";
+inline constexpr const char* kFiffForward = "lead-field-fwd.fif";
 
 /// Every name that a model's folder may hold.
 std::vector<std::string> bemFileNames();
@@ -51,5 +52,12 @@ void writeBemFiles(const BemModel& model, const BemFileOptions& options, const s
 /// a check, and what it does not keep a finding.
 void checkBemFiles(const std::filesystem::path& folder, const BemFileOptions& options,
                    BemModel& model);
+
+/// OpenMEEG's commands on these files, as far as they lead: to gain.txt from dipoles and
+/// electrodes.
+std::vector<std::vector<std::string>> openMeegCommands(bool hasDipoles, bool hasElectrodes);
+
+/// From the files' frame to that of MNE's files, mm.
+AffineTransform toMriCoordinates(const BemModel& model, const BemFileOptions& options);
 
 }  // namespace adaptiso

@@ -63,6 +63,7 @@ struct BemModelOptions {
     bool namesCsf = false;  ///< the conductivity of CSF is given
     ElectrodeOptions electrodes{};
     SourceOptions sources{};
+    std::string leadField{};                      ///< by whom: "mne" or "openmeeg"; empty: none
     bool wantsHeadShape = false;                  ///< the skin alone as well, for coregistration
     std::vector<std::string> inputCoordinates{};  ///< as stated for files of surfaces, for reports
 
@@ -155,6 +156,14 @@ struct BemSources {
     SourceMoves moves;
 
     std::int64_t count() const;
+    std::int64_t dipoles() const;  ///< three at each point of a grid
+};
+
+/// Potentials at a model's electrodes of its dipoles.
+struct BemLeadField {
+    std::string solver;        ///< "MNE-Python 1.3.0"
+    std::vector<double> gain;  ///< as LeadField has it, columns as dipoles.txt has lines
+    std::string forward{};     ///< the bytes of MNE's own file; may be empty
 };
 
 /// The layers of a model in tetrahedra.
@@ -187,6 +196,7 @@ struct BemModel {
     std::optional<BemTetrahedra> tetrahedra;  ///< if wanted, and there is a model
     std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
     std::optional<BemSources> sources{};      ///< if wanted, and there is a model
+    std::optional<BemLeadField> leadField{};  ///< if wanted, and there is a model
     std::vector<TriangleMesh> pial{};         ///< LPS mm, as given: to lie within the inner skull
     GivenElectrodes givenElectrodes{};
     std::vector<TriangleMesh>
