@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <system_error>
 
 #include "Common/CommonFrame.h"
+#include "Common/Naming.h"
 #include "Common/OptionValues.h"
 #include "Common/UsageWords.h"
 
@@ -15,9 +17,9 @@ namespace {
 constexpr const char* kGroup = "Many inputs (each a run of its own, in a process of its own)";
 
 /// Options that are not those of a single run of the batch.
-constexpr std::array<std::string_view, 9> kOfTheBatch{"list",  "output-dir", "summary",
-                                                      "jobs",  "json",       "skip-existing",
-                                                      "quiet", "threads",    "no-warnings"};
+constexpr std::array<std::string_view, 11> kOfTheBatch{
+    "csv",  "list",          "log",   "output-dir", "summary",    "jobs",
+    "json", "skip-existing", "quiet", "threads",    "no-warnings"};
 
 }  // namespace
 
@@ -49,6 +51,17 @@ void checkPlaceholders(const std::vector<std::pair<const char*, std::filesystem:
     requireFolderName("--output-dir", batch.outputFolder,
                       "give a folder; -o names the files in it");
     requirePlaceholders("--json", common.json, {});
+}
+
+void refuseOutputAsInput(const std::vector<std::filesystem::path>& inputs,
+                         const std::filesystem::path& output, const BatchOptions& batch) {
+    if (inputs.size() != 2 || !output.empty() || batch.isRequested()) return;
+    const std::filesystem::path& last = inputs.back();
+    std::error_code error;
+    const bool isImage = inputStem(last) != last.filename().string();
+    if (isImage || last.empty() || std::filesystem::exists(last, error)) return;
+    throw UsageError(last.string() + ": there is no such input; an output is given as -o " +
+                     shellQuoted(last.string()));
 }
 
 void keepRunOptions(const CLI::App& app, BatchOptions& options) {

@@ -40,6 +40,11 @@ bool holdsName(const std::filesystem::path& output);
 void checkPlaceholders(const std::vector<std::pair<const char*, std::filesystem::path>>& named,
                        const BatchOptions& batch, const CommonOptions& common);
 
+/// Refuses the second of two inputs where there is no such file and its name is that of no image:
+/// an output without -o. \throws UsageError
+void refuseOutputAsInput(const std::vector<std::filesystem::path>& inputs,
+                         const std::filesystem::path& output, const BatchOptions& batch);
+
 /// Fills `options.runOptions` from what was parsed. \pre parsing is done
 void keepRunOptions(const CLI::App& app, BatchOptions& options);
 

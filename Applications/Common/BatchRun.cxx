@@ -7,6 +7,7 @@
 
 #include "Common/Batch.h"
 #include "Common/BatchSummary.h"
+#include "Common/Log.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
@@ -337,9 +338,10 @@ private:
                                                           : "done  ";
         const std::string again =
             record.madeAgain.empty() ? "" : "; made again: " + record.madeAgain;
-        std::cout << oneLine(std::string(state) + "  " + name + ": " + says(record) + ", " +
-                             formatFixed(record.seconds, 2) + " s" + again)
-                  << std::endl;
+        const std::string text = oneLine(std::string(state) + "  " + name + ": " + says(record) +
+                                         ", " + formatFixed(record.seconds, 2) + " s" + again);
+        addToLog(text);
+        std::cout << text << std::endl;
     }
 
     /// The page as of now, on which runs that have not ended are not finished.
