@@ -37,6 +37,9 @@ void declareBatchOptions(CLI::App& app, BatchOptions& options) {
     running.text("--summary", "FILE", options.summary,
                  "Write a page (HTML) of all runs that have a record in the output folder, with "
                  "links to what they made (default with --output-dir: summary.html there)");
+    running.text("--csv", "FILE", options.table,
+                 "Write a table (CSV) of this batch: a line for each surface or region, with its "
+                 "figures");
 }
 
 bool holdsName(const std::filesystem::path& output) {
@@ -47,6 +50,7 @@ void checkPlaceholders(const std::vector<std::pair<const char*, std::filesystem:
                        const BatchOptions& batch, const CommonOptions& common) {
     for (const auto& [option, output] : named) requirePlaceholders(option, output, {"{name}"});
     requirePlaceholders("--summary", batch.summary, {});
+    requirePlaceholders("--csv", batch.table, {});
     requirePlaceholders("--output-dir", batch.outputFolder, {});
     requireFolderName("--output-dir", batch.outputFolder,
                       "give a folder; -o names the files in it");

@@ -101,6 +101,7 @@ constexpr Habit kHabits[] = {
     {"dry-run", "giant", "", "the step plan writes the plan alone"},
     {"csv tsv table stats qc html report", "bids", "",
      "the level group writes quality.tsv and summary.html"},
+    {"tsv table stats spreadsheet", "", "csv", ""},
     {"csv tsv table stats", "", "json", ""},
     {"qc html page", "", "report", ""},
     {"color colour colormap cmap heatmap", "compare", "colored", ""},
