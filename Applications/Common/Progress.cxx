@@ -22,7 +22,7 @@ const StageTimer kSinceStart;
 
 /// Lines for a file or a pipe, few: a short run has none.
 void printLine(const std::string& text) {
-    constexpr double kBetweenSeconds = 30;
+    constexpr double kBetweenSeconds = 60;
     static double next = kBetweenSeconds;
     if (kSinceStart.total() < next) return;
     next = kSinceStart.total() + kBetweenSeconds;
