@@ -40,7 +40,7 @@ std::string batchTable(const std::vector<RunRecord>& records) {
                 if (std::ranges::find(columns, column) == columns.end()) columns.push_back(column);
                 row.emplace(column, text);
             };
-            add("name", record.name);
+            add("run", record.name);  // "name" is a region's
             add("input", joined(record.files));
             add("state", record.hasPassed() ? "done" : "failed");
             add("result", record.error.empty() ? record.says : record.error);
@@ -48,7 +48,9 @@ std::string batchTable(const std::vector<RunRecord>& records) {
                 joined(
                     record.warnings, [](const Warning& warning) { return warning.code; }, " "));
             add("seconds", Json(record.seconds).dump());
-            add("output", n < record.outputs.size() ? record.outputs[n] : "");
+            const std::size_t most = std::max<std::size_t>(surfaces.size(), 1);
+            // a region has "file"
+            add("output", record.outputs.size() == most ? record.outputs[n] : "");
             if (n >= surfaces.size() || !surfaces[n].is_object()) continue;
             for (const auto& [key, value] : surfaces[n].items()) {
                 if (value.is_primitive()) add(key, cellText(value));
