@@ -19,10 +19,12 @@ std::string cellText(const Json& value) {
     return value.is_string() ? value.get<std::string>() : value.is_null() ? "" : value.dump();
 }
 
-/// The surfaces or regions that a report lists.
+/// The surfaces or regions that a report lists, or its one output.
 Json surfacesOf(const RunRecord& record) {
-    for (const char* const key : {"surfaces", "regions"}) {
-        if (record.report.is_object() && record.report.contains(key)) return record.report[key];
+    for (const char* const key : {"surfaces", "regions", "output"}) {
+        if (!record.report.is_object() || !record.report.contains(key)) continue;
+        const Json& found = record.report.at(key);
+        return found.is_array() ? found : Json::array({found});
     }
     return Json::array();
 }
