@@ -118,6 +118,12 @@ std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
                                       const std::vector<std::filesystem::path>& inputs,
                                       const NameInput& nameOf, bool areOneItem = false);
 
+/// Prints how many of `records` failed, by reason, and how many have which warning; then what was
+/// written, which may be empty, and what to do next.
+/// \param thing  "input"
+void printTotals(const std::vector<RunRecord>& records, const std::string& thing,
+                 const std::filesystem::path& written, const std::vector<std::string>& toDo);
+
 /// The batch mode of a program: plans, runs, prints totals, writes page and JSON lines.
 /// \return kExitOk, or kExitCheckFailed if any input failed
 /// \throws UsageError    options that don't go together, an output that all runs would write

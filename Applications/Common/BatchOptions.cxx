@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <system_error>
 
 #include "Common/CommonFrame.h"
+#include "Common/Naming.h"
 #include "Common/OptionValues.h"
 #include "Common/UsageWords.h"
 
@@ -15,9 +17,9 @@ namespace {
 constexpr const char* kGroup = "Many inputs (each a run of its own, in a process of its own)";
 
 /// Options that are not those of a single run of the batch.
-constexpr std::array<std::string_view, 9> kOfTheBatch{"list",  "output-dir", "summary",
-                                                      "jobs",  "json",       "skip-existing",
-                                                      "quiet", "threads",    "no-warnings"};
+constexpr std::array<std::string_view, 11> kOfTheBatch{
+    "csv",  "list",          "log",   "output-dir", "summary",    "jobs",
+    "json", "skip-existing", "quiet", "threads",    "no-warnings"};
 
 }  // namespace
 
@@ -35,6 +37,9 @@ void declareBatchOptions(CLI::App& app, BatchOptions& options) {
     running.text("--summary", "FILE", options.summary,
                  "Write a page (HTML) of all runs that have a record in the output folder, with "
                  "links to what they made (default with --output-dir: summary.html there)");
+    running.text("--csv", "FILE", options.table,
+                 "Write a table (CSV) of this batch: a line for each surface or region, with its "
+                 "figures");
 }
 
 bool holdsName(const std::filesystem::path& output) {
@@ -45,10 +50,22 @@ void checkPlaceholders(const std::vector<std::pair<const char*, std::filesystem:
                        const BatchOptions& batch, const CommonOptions& common) {
     for (const auto& [option, output] : named) requirePlaceholders(option, output, {"{name}"});
     requirePlaceholders("--summary", batch.summary, {});
+    requirePlaceholders("--csv", batch.table, {});
     requirePlaceholders("--output-dir", batch.outputFolder, {});
     requireFolderName("--output-dir", batch.outputFolder,
                       "give a folder; -o names the files in it");
     requirePlaceholders("--json", common.json, {});
+}
+
+void refuseOutputAsInput(const std::vector<std::filesystem::path>& inputs,
+                         const std::filesystem::path& output, const BatchOptions& batch) {
+    if (inputs.size() != 2 || !output.empty() || batch.isRequested()) return;
+    const std::filesystem::path& last = inputs.back();
+    std::error_code error;
+    const bool isImage = inputStem(last) != last.filename().string();
+    if (isImage || last.empty() || std::filesystem::exists(last, error)) return;
+    throw UsageError(last.string() + ": there is no such input; an output is given as -o " +
+                     shellQuoted(last.string()));
 }
 
 void keepRunOptions(const CLI::App& app, BatchOptions& options) {

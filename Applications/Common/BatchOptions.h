@@ -15,20 +15,21 @@ namespace adaptiso {
 struct BatchOptions {
     std::filesystem::path list;  ///< inputs, one a line; "-" for stdin, empty for none
     std::filesystem::path outputFolder;
-    std::filesystem::path summary;
+    std::filesystem::path summary, table;
     std::optional<int> jobs;
     bool skipsExisting = false;
 
     /// An option of this struct is given.
     bool isRequested() const {
-        return !list.empty() || !outputFolder.empty() || !summary.empty() || jobs || skipsExisting;
+        return !list.empty() || !outputFolder.empty() || !summary.empty() || !table.empty() ||
+               jobs || skipsExisting;
     }
     /// The options of every run, as given ("--iso=100"), without those of this struct, --json,
     /// --quiet, --no-warnings and --threads. Set by keepRunOptions().
     std::vector<std::string> runOptions{};
 };
 
-/// Adds --list, --output-dir, --summary, --jobs and --skip-existing.
+/// Adds --list, --output-dir, --summary, --csv, --jobs and --skip-existing.
 void declareBatchOptions(CLI::App& app, BatchOptions& options);
 
 /// An output's name holds "{name}", which stands for an input's.
@@ -39,6 +40,11 @@ bool holdsName(const std::filesystem::path& output);
 /// \throws UsageError
 void checkPlaceholders(const std::vector<std::pair<const char*, std::filesystem::path>>& named,
                        const BatchOptions& batch, const CommonOptions& common);
+
+/// Refuses the second of two inputs where there is no such file and its name is that of no image:
+/// an output without -o. \throws UsageError
+void refuseOutputAsInput(const std::vector<std::filesystem::path>& inputs,
+                         const std::filesystem::path& output, const BatchOptions& batch);
 
 /// Fills `options.runOptions` from what was parsed. \pre parsing is done
 void keepRunOptions(const CLI::App& app, BatchOptions& options);

@@ -4,16 +4,19 @@
 #include <iostream>
 #include <iterator>
 #include <map>
+#include <set>
 #include <string_view>
 #include <thread>
 
 #include "Common/Batch.h"
+#include "Common/BatchSummary.h"
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/UsageWords.h"
 #include "Common/Verdict.h"
 #include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/TextCells.h"
 #include "adaptiso/Core/TextLines.h"
 
@@ -64,6 +67,47 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
         require(holdsName(value),
                 name + " " + value +
                     ": needs {name} in it, or the runs for all inputs would write the same");
+    }
+}
+
+/// The error of a failed run without file and remedy, and with N for numbers, so that those of a
+/// kind are alike.
+std::string reasonOf(const RunRecord& record) {
+    std::string text = record.error.empty() ? record.says : record.error;
+    for (const std::string& file : record.files) {
+        if (text.starts_with(file + ": ")) text.erase(0, file.size() + 2);
+    }
+    text.resize(std::min(text.find("; "), text.size()));
+    std::string kind;
+    for (std::size_t n = 0; n < text.size(); ++n) {
+        const bool begins = n == 0 || text[n - 1] == ' ' || text[n - 1] == '(';
+        const std::size_t end = std::min(text.find_first_not_of("0123456789.,-+", n), text.size());
+        const bool isNumber =
+            begins && text.find_first_of("0123456789", n) < end && (text[end - 1] != '.');
+        kind += isNumber ? 'N' : text[n];
+        if (isNumber) n = end - 1;
+    }
+    return kind;
+}
+
+/// "2 failed: holds no label: a.nii, b.nii", most first.
+void printGroups(const std::map<std::string, std::vector<std::string>>& groups,
+                 const std::string& words) {
+    constexpr std::size_t kMostGroups = 6, kMostNames = 4;
+    std::vector<std::pair<std::string, std::vector<std::string>>> sorted(groups.begin(),
+                                                                         groups.end());
+    std::ranges::stable_sort(
+        sorted, [](const auto& a, const auto& b) { return a.second.size() > b.second.size(); });
+    for (std::size_t n = 0; n < std::min(kMostGroups, sorted.size()); ++n) {
+        auto& [reason, names] = sorted[n];
+        const std::size_t count = names.size();
+        if (count > kMostNames) names.resize(kMostNames);
+        std::cout << oneLine("  " + std::to_string(count) + " " + words + " " + reason + ": " +
+                             joined(names) + (count > kMostNames ? ", ..." : ""))
+                  << '\n';
+    }
+    if (sorted.size() > kMostGroups) {
+        std::cout << "  and " << sorted.size() - kMostGroups << " more kinds\n";
     }
 }
 
@@ -173,6 +217,30 @@ std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchI
     return runs;
 }
 
+void printTotals(const std::vector<RunRecord>& records, const std::string& thing,
+                 const fs::path& written, const std::vector<std::string>& toDo) {
+    std::map<std::string, std::vector<std::string>> failures, warnings;
+    for (const RunRecord& record : records) {
+        const std::string name = joined(record.files);
+        if (!record.hasPassed()) failures[reasonOf(record)].push_back(name);
+        std::set<std::string> codes;
+        for (const Warning& warning : record.warnings) {
+            if (!isNote(warning)) codes.insert(warning.code);
+        }
+        for (const std::string& code : codes) warnings[code].push_back(name);
+    }
+    const auto failed = std::ranges::count_if(records, std::not_fn(&RunRecord::hasPassed));
+    const auto before = std::ranges::count_if(records, std::mem_fn(&RunRecord::isOfEarlierRun));
+    std::cout << counted(std::ssize(records), thing) << ", " << failed << " failed";
+    if (before > 0) std::cout << ", " << before << " of an earlier run";
+    std::cout << '\n';
+    printGroups(failures, "failed:");
+    printGroups(warnings, "with the warning");
+    std::string line = written.empty() ? "" : "Wrote " + written.string();
+    if (!toDo.empty()) line += (line.empty() ? "Next: " : "; next: ") + joined(toDo, "; ");
+    if (!line.empty()) std::cout << oneLine(line) << '\n';
+}
+
 int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const BatchOptions& batch,
              const CommonOptions& common) {
     checkOptions(program, batch);
@@ -183,7 +251,7 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
         running.summary = running.folder / "summary.html";
         running.summaryFolder = running.folder;
     }
-    for (const fs::path& file : {running.summary, fs::path(common.json)}) {
+    for (const fs::path& file : {running.summary, batch.table, fs::path(common.json)}) {
         if (file.empty() || file == "-") continue;
         checkOutput(file, file == running.summary ? running.summaryFolder : fs::path());
         for (const PlannedRun& run : runs) {
@@ -194,18 +262,20 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
     running.jsonLines = &lines;
     const std::vector<RunRecord> records = runRuns(program, runs, batch, running, common);
     if (common.wantsJson() && !common.wantsJsonOnStdout()) writeWhole(common.json, lines);
-    const auto failed = std::ranges::count_if(records, std::not_fn(&RunRecord::hasPassed));
-    const auto before = std::ranges::count_if(records, std::mem_fn(&RunRecord::isOfEarlierRun));
+    if (!batch.table.empty()) writeWhole(batch.table, batchTable(records));
+    const bool haveAllPassed = std::ranges::all_of(records, std::mem_fn(&RunRecord::hasPassed));
     if (!common.isQuiet && !common.wantsJsonOnStdout()) {
-        std::cout << records.size() << " input" << (records.size() == 1 ? "" : "s") << ", "
-                  << failed << " failed";
-        if (before > 0) std::cout << ", " << before << " of an earlier run";
-        std::cout << '\n';
-        if (!running.summary.empty())
-            std::cout << "Wrote " << oneLine(running.summary.string()) << '\n';
+        std::vector<std::string> toDo;
+        if (!running.summary.empty()) {
+            toDo.push_back("open " + shellQuoted(running.summary.string()) + " in a browser");
+        }
+        if (!haveAllPassed && (program.keepsRecords || !running.folder.empty())) {
+            toDo.emplace_back("mend what failed, run again with --skip-existing");
+        }
+        printTotals(records, "input", running.summary, toDo);
     }
     flushResults();
-    return failed == 0 ? kExitOk : kExitCheckFailed;
+    return haveAllPassed ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace adaptiso

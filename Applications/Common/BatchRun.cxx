@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "Common/Batch.h"
 #include "Common/BatchSummary.h"
+#include "Common/Log.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
@@ -133,6 +135,7 @@ private:
         for (std::size_t n = 0; n < runs_.size(); ++n) {
             if (!takeEarlier(n, true)) waiting.push_back(n);
         }
+        waiting_ = waiting.size();
         for (const std::size_t n : waiting) announce(n);
         writePage();
         printNext();
@@ -243,6 +246,7 @@ private:
         const fs::path folder = run.item.folder.empty() ? fs::path(".") : run.item.folder;
         RunRecord record = newRecord(n);
         record.madeAgain = reasons_[n];
+        ++finished_;
         addResult(result, run.item.inputs, record);
         if (result.signal != 0) detail::removeLeftTemporaries(folder, result.process);
         // of two batches in one folder the slower may fail where the other has finished
@@ -316,8 +320,21 @@ private:
             print(runs_[printed_].item, *ended_[printed_]);
         }
         if (printed_ < runs_.size()) {
-            progress_.show(std::to_string(printed_) + " of " + std::to_string(runs_.size()));
+            progress_.show(std::to_string(printed_) + " of " + std::to_string(runs_.size()) +
+                           timeLeft());
         }
+    }
+
+    /// ", about 40 min left", by the runs that have ended; empty before the first.
+    std::string timeLeft() const {
+        constexpr double kMinute = 60, kLongMinutes = 90;
+        if (finished_ == 0) return "";
+        const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count(),
+                     left = elapsed / static_cast<double>(finished_) *
+                            static_cast<double>(waiting_ - std::min(waiting_, finished_));
+        const double minutes = std::ceil(left / kMinute);
+        return minutes <= kLongMinutes ? ", about " + formatRounded(minutes) + " min left"
+                                       : ", about " + formatRounded(minutes / kMinute) + " h left";
     }
 
     void print(const BatchItem& item, const RunRecord& record) const {
@@ -337,9 +354,10 @@ private:
                                                           : "done  ";
         const std::string again =
             record.madeAgain.empty() ? "" : "; made again: " + record.madeAgain;
-        std::cout << oneLine(std::string(state) + "  " + name + ": " + says(record) + ", " +
-                             formatFixed(record.seconds, 2) + " s" + again)
-                  << std::endl;
+        const std::string text = oneLine(std::string(state) + "  " + name + ": " + says(record) +
+                                         ", " + formatFixed(record.seconds, 2) + " s" + again);
+        addToLog(text);
+        std::cout << text << std::endl;
     }
 
     /// The page as of now, on which runs that have not ended are not finished.
@@ -371,6 +389,8 @@ private:
     Clock::time_point pageWritten_{};
     ProgressLine progress_;
     std::size_t printed_ = 0;
+    const Clock::time_point start_ = Clock::now();
+    std::size_t waiting_ = 0, finished_ = 0;  ///< runs to make, and those that have ended
 };
 
 std::string differenceOf(const std::vector<RecordedOption>& before,

@@ -38,6 +38,10 @@ struct SummaryRow {
 /// with the record.
 SummaryRow summaryRow(const std::filesystem::path& file, const RunRecord& record);
 
+/// The table of --csv: a line for each surface or region of the runs, and for a run without; the
+/// run's columns, then the single figures of the report's.
+std::string batchTable(const std::vector<RunRecord>& records);
+
 /// A page of HTML without scripts that lists `rows` in their order, the verdict in words and
 /// colour, with links relative to `page`, and a thumbnail where there are pictures.
 std::string summaryPage(const std::vector<SummaryRow>& rows, const std::filesystem::path& page);

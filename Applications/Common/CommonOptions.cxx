@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "Common/Log.h"
 #include "Common/OptionValues.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Parallel.h"
@@ -40,6 +41,13 @@ void declareCommonOptions(CLI::App& app, CommonOptions& options, const std::stri
         ->join(',');
     running.text("--json", "FILE", options.json,
                  "Write a report to FILE, or to stdout when FILE is -, in place of the text");
+    running.value(
+        "--log", "FILE",
+        [&app](const std::string& text) {
+            openLog(text);
+            addToLog(app.get_name() + " " + programVersion());
+        },
+        "Add steps, warnings and errors to FILE as they come, each with its time");
     declareVersion(app);
 }
 

@@ -56,6 +56,15 @@ std::string causeOf(const std::string& text) {
     return "";
 }
 
+/// "; 50 % is 0.5", of a percentage where a share is wanted; else empty.
+std::string shareOf(std::string text, const NumberRule& rule) {
+    constexpr double kWhole = 100;
+    if (text.ends_with('%')) text.pop_back();
+    const std::optional<double> value = parseFiniteNumber(text);
+    if (!value || rule.least != 0 || rule.most != 1 || !(*value > 1 && *value <= kWhole)) return "";
+    return "; " + text + " % is " + formatShort(*value / kWhole);
+}
+
 }  // namespace
 
 void refuseValue(const std::string& option, const std::string& text, const std::string& rule) {
@@ -66,7 +75,8 @@ void refuseValue(const std::string& option, const std::string& text, const std::
 
 double parseNumber(const std::string& option, const std::string& text, const NumberRule& rule) {
     const std::optional<double> value = parseFiniteNumber(text);
-    if (!value || !rule.allows(*value)) refuseValue(option, text, toWords(rule));
+    if (!value || !rule.allows(*value))
+        refuseValue(option, text, toWords(rule) + shareOf(text, rule));
     return *value;
 }
 

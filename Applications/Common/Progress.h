@@ -15,8 +15,8 @@ namespace adaptiso {
 void observeProgress(std::function<void(const std::string&)> observer);
 
 /// One line on a terminal's stderr that says what is going on ("extract 42 %, 3 s", the time since
-/// the program began), and nothing at all when stderr is a file or a pipe, or with --quiet. The
-/// line is wiped at the end.
+/// the program began), wiped at the end; in a file or a pipe a line each minute. Nothing with
+/// --quiet.
 class ProgressLine {
 public:
     explicit ProgressLine(bool isQuiet);

@@ -17,7 +17,9 @@
 #include <string_view>
 
 #include "Common/CommonOptions.h"
+#include "Common/Habits.h"
 #include "Common/Json.h"
+#include "Common/Log.h"
 #include "Common/UsageWords.h"
 #include "Common/Verdict.h"
 #include "adaptiso/Core/Text.h"
@@ -86,6 +88,7 @@ std::string oneLine(std::string_view text) {
 
 void printError(std::string_view programName, std::string_view message) {
     std::cerr << programName << ": " << oneLine(message) << '\n';
+    addToLog(message);
 }
 
 }  // namespace adaptiso
@@ -180,7 +183,9 @@ std::string shortHelp(const CLI::App& app) {
             if (option->get_group() != group || !option->nonpositional()) continue;
             const bool takesValue = option->get_items_expected_max() > 0;
             const std::string value = takesValue ? "=" + option->get_type_name() : "";
-            names += "--" + option->get_lnames().front() + value + " ";
+            const auto& letters = option->get_snames();
+            names += (letters.empty() ? "" : "-" + letters.front() + ",") + "--" +
+                     option->get_lnames().front() + value + " ";
         }
         if (names.empty()) continue;
         text += group + ":\n  " + folded(names, kColumns - 2, "  ") + "\n";
@@ -190,7 +195,36 @@ std::string shortHelp(const CLI::App& app) {
     if (begin != std::string::npos) {
         text += "\nExample:\n" + footer.substr(begin, footer.find('\n', begin) - begin) + "\n";
     }
-    return text + "\nAll of it: " + app.get_name() + " --help, or man " + app.get_name() + "\n";
+    return text + "\nAll of it: " + app.get_name() + " --help, or man " + app.get_name() +
+           "\nOf one option: " + app.get_name() + " --help OPTION\n";
+}
+
+/// Of --help the options that go by `word` or, where none does, that hold it in name or text; and
+/// what other programs' users mean by it. \throws UsageError  there is nothing
+std::string helpOn(const CLI::App& app, const std::string& word) {
+    const std::string name =
+        lowerCase(word.substr(std::min(word.find_first_not_of('-'), word.size())));
+    std::string exact, holding;
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app.get_options()) {
+        if (option->get_group().empty()) continue;  // hidden
+        const std::string names = lowerCase("," + option->get_name(true, true) + ",");
+        const std::string text = FoldedHelp().make_option(option, !option->nonpositional());
+        for (const char* const dashes : {",", ",-", ",--"}) {
+            if (names.find(dashes + name + ",") != std::string::npos) exact += text;
+        }
+        if (lowerCase(names + option->get_description()).find(name) != std::string::npos) {
+            holding += text;
+        }
+        for (const std::string& own : option->get_lnames()) known.push_back(own);
+    }
+    if (!exact.empty()) return exact;
+    const auto answer = habitAnswer(app.get_name(), name, known);
+    if (!answer && holding.empty()) {
+        throw UsageError("--help " + shown(word) + ": no option is named so" +
+                         suggestion(name, known));
+    }
+    return (answer ? word + ": " + *answer + "\n" : "") + holding;
 }
 
 /// Tells why a run has failed, on stderr and to whom --json was asked for.
@@ -222,11 +256,14 @@ void keepStandardStreams() {
 }
 
 int runParsed(const Program& program, const std::function<int()>& run) {
+    int code = kExitOk;
     try {
-        return run();
+        code = run();
     } catch (...) {
-        return fail(program, verdictOf(std::current_exception()));
+        code = fail(program, verdictOf(std::current_exception()));
     }
+    addToLog("ended with exit code " + std::to_string(code));
+    return code;
 }
 
 }  // namespace
@@ -253,6 +290,11 @@ int runApp(int argc, const char* const* argv, const Program& program,
             std::cout << shortHelp(app);
             return runParsed(program, [] { return flushResults(), kExitOk; });
         }
+        const std::string_view first = argc == 3 ? argv[1] : "";
+        if (first == "--help" || first == "-h") {
+            std::cout << helpOn(app, argv[2]);
+            return runParsed(program, [] { return flushResults(), kExitOk; });
+        }
         refuseMisplacedValues(app, argc, argv);
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {
@@ -260,8 +302,8 @@ int runApp(int argc, const char* const* argv, const Program& program,
         return runParsed(program, [code] { return flushResults(), code; });
     } catch (const CLI::ParseError& error) {
         return fail(program, {kExitUsage, inWords(app, error)});
-    } catch (const UsageError& error) {
-        return fail(program, {kExitUsage, error.what()});
+    } catch (...) {
+        return fail(program, verdictOf(std::current_exception()));
     }
     return runParsed(program, run);
 }

@@ -2,11 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
+#include <span>
+#include <system_error>
 
+#include "Common/Habits.h"
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "adaptiso/Core/Phrases.h"
+#include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
@@ -62,30 +67,6 @@ const CLI::Option* optionNamed(const CLI::App& app, std::string_view word) {
     return found == options.end() ? nullptr : *found;
 }
 
-/// What other programs call an option of this one.
-std::optional<std::string> nameElsewhere(std::string_view typed,
-                                         const std::vector<std::string>& known) {
-    static const std::pair<std::string_view, std::vector<std::string_view>> kNames[] = {
-        {"iso", {"threshold", "contour", "thresh"}},
-        {"reduction", {"decimate", "decimation", "reduce"}},
-        {"max-error", {"tolerance", "error"}},
-        {"triangles", {"faces", "polygons"}},
-        {"force", {"overwrite", "replace", "clobber"}},
-        {"brain-mask", {"mask"}},
-        {"jobs", {"n-cpus", "n-jobs", "n-procs", "nproc", "workers", "parallel"}},
-        {"threads", {"n-cpus", "n-threads", "cores"}},
-        {"picture-color", {"color", "colour"}},
-        {"report", {"qc", "html"}},
-        {"pictures", {"screenshot", "png"}},
-        {"output", {"out-file", "save"}}};
-    const std::string word = replaced(std::string(typed), "_", "-");
-    for (const auto& [own, others] : kNames) {
-        const bool isMeant = std::ranges::find(others, word) != others.end();
-        if (isMeant && std::ranges::find(known, own) != known.end()) return std::string(own);
-    }
-    return std::nullopt;
-}
-
 std::string_view beforeEquals(std::string_view word) {
     return word.substr(0, word.find('='));
 }
@@ -120,6 +101,15 @@ std::string optionsAlone(const CLI::App& app) {
     return "options only";
 }
 
+/// "; an output is given as -o out.stl", where one word more than expected may be that.
+std::string outputHint(const CLI::App& app, const std::vector<std::string>& words) {
+    std::error_code error;
+    const CLI::Option* const output = optionNamed(app, "-o");
+    const bool maybe = words.size() == 1 && output != nullptr && output->count() == 0 &&
+                       !std::filesystem::exists(words.front(), error);
+    return maybe ? "; an output is given as -o " + shellQuoted(words.front()) : "";
+}
+
 std::string ofUnexpected(const CLI::App& app) {
     const std::vector<std::string> words = app.remaining();
     const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) {
@@ -129,16 +119,18 @@ std::string ofUnexpected(const CLI::App& app) {
         const std::string wanted = positionals(app);
         return shown(words.empty() ? "" : words.front()) + ": is one argument too many; " +
                app.get_name() + " takes " +
-               (wanted.empty() ? optionsAlone(app) : wanted + " and options");
+               (wanted.empty() ? optionsAlone(app) : wanted + " and options") +
+               outputHint(app, words);
     }
     const std::string_view name = beforeEquals(*option);
     const std::string_view letters = name.substr(
         name.find_first_not_of('-') == name.npos ? name.size() : name.find_first_not_of('-'));
     const std::vector<std::string> known = longNames(app);
-    auto meant = nameElsewhere(letters, known);
-    if (!meant) meant = nearestWord(letters, known);
-    return shown(name) + ": there is no such option" +
-           (meant ? "; did you mean --" + *meant + "?" : "");
+    auto answer = habitAnswer(app.get_name(), letters, known);
+    if (const auto meant = nearestWord(letters, known); !answer && meant) {
+        answer = "did you mean --" + *meant + "?";
+    }
+    return shown(name) + ": there is no such option" + (answer ? "; " + *answer : "");
 }
 
 /// "--iso", of hidden options too; "INPUT".
@@ -167,6 +159,23 @@ void refuseMistakenLetters(const CLI::App& app, std::string_view word) {
         throw UsageError(name + ": no = goes between " + letter + " and its value; give " + letter +
                          " " + given + " or " + name + "=" + given);
     }
+}
+
+/// Numbers with blanks between, "0.3, 0.006 0.3", after an option that takes one word for all.
+/// \param words  after the option's name \throws UsageError
+void refuseBlanks(const CLI::Option& option, std::span<const char* const> words) {
+    if (valueName(option).find(',') == std::string::npos) return;
+    std::string together;
+    std::size_t count = 0;
+    for (; count < words.size(); ++count) {
+        std::string_view number = words[count];
+        while (number.ends_with(',')) number.remove_suffix(1);
+        if (!parseFiniteNumber(number)) break;
+        addPart(together, std::string(number), ",");
+    }
+    if (count < 2) return;
+    throw UsageError(nameOf(option) +
+                     ": its numbers have commas and no blanks between them; give " + together);
 }
 
 }  // namespace
@@ -243,6 +252,7 @@ void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* arg
         if (value.starts_with("--") && optionNamed(app, beforeEquals(value)) != nullptr) {
             refuse("its value is missing; " + std::string(value) + " is an option");
         }
+        if (!hasOwn) refuseBlanks(*option, {argv + n, static_cast<std::size_t>(argc - n)});
         for (int more = 1; !hasOwn && more < option->get_items_expected_max() && n + 1 < argc &&
                            argv[n + 1][0] != '-';
              ++more) {

@@ -52,7 +52,7 @@ void takeNumbers(const std::string& option, const std::string& text, char separa
     std::vector<double> values;
     bool areNumbers = true;
     for (const std::string& part : parts(text, separator)) {
-        const std::optional<double> value = parseFiniteNumber(part);
+        const std::optional<double> value = parseFiniteNumber(trimmed(part));
         areNumbers = areNumbers && value;
         values.push_back(value.value_or(0));
     }

@@ -27,7 +27,7 @@ const std::vector<std::string> kRefused{
     "threads",       "no-warnings", "strict",        "help",     "version",      "allow",
     "list-series",   "info",        "show-phi",      "force",    "subjects-dir", "subject",
     "dry-run",       "t1",          "probabilities", "ct",       "surfaces",     "volume",
-    "nested",        "self-test"};
+    "nested",        "self-test",   "log",           "csv"};
 
 std::string outputOf(const fs::path& program, const std::string& option) {
     const ChildResult result = runChild(program, {option});

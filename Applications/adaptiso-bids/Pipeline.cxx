@@ -33,6 +33,10 @@ public:
         for (const Job& job : jobs) run(job);
         if (options_.makes("check")) run(checkJob(options_, jobs.front()));
         if (writesJson) writeWhole(common.json, lines_);
+        if (!common.isQuiet && !common.wantsJsonOnStdout()) {
+            printTotals(records_, "run", options_.output,
+                        {"the level group, with the same options, for quality.tsv and a page"});
+        }
         flushResults();
         return wasRefused_  ? kExitUsage
                : hasBroken_ ? kExitInternalError
@@ -55,19 +59,22 @@ private:
         for (const std::string& subject : job.without) {
             printFailed(subject, job.product + ": no " + job.needs);
         }
-        for (const RunRecord& record :
+        for (RunRecord& record :
              runRuns(job.program, job.runs, job.batch, running_, options_.common)) {
             const bool hasExited = record.signal == 0;
             hasFailed_ = hasFailed_ || !record.hasPassed();
             wasShort_ = wasShort_ || record.wasShort;
             hasBroken_ = hasBroken_ || (hasExited && record.exitCode == kExitInternalError);
             wasRefused_ = wasRefused_ || (hasExited && record.exitCode == kExitUsage);
+            record.report = nullptr;  // of many regions large
+            records_.push_back(std::move(record));
         }
     }
 
     const BidsOptions& options_;
     const ChosenSubjects& chosen_;
     BatchRunning running_;
+    std::vector<RunRecord> records_;
     std::string lines_;
     bool hasFailed_ = false, wasShort_ = false, hasBroken_ = false, wasRefused_ = false;
 };

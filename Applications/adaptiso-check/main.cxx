@@ -53,8 +53,9 @@ void declareSelfTest(CLI::App& app, CheckOptions& options) {
 
 /// The self-test makes its own input.
 void checkSelfTestAlone(const CLI::App& app) {
-    const std::set<std::string> own{"--self-test", "--json",    "--report", "--pictures",
-                                    "--quiet",     "--threads", "--strict", "--no-warnings"};
+    const std::set<std::string> own{"--self-test", "--json",     "--log",
+                                    "--report",    "--pictures", "--quiet",
+                                    "--threads",   "--strict",   "--no-warnings"};
     for (const std::string& name : givenOptions(app)) {
         if (own.contains(name)) continue;
         throw UsageError("--self-test: not together with " +

@@ -48,6 +48,7 @@ void checkCombinations(const LabelsOptions& options) {
     if (options.inputs.empty() && options.batch.list.empty()) {
         throw UsageError("SEG is missing: the label map to make surfaces of");
     }
+    refuseOutputAsInput(options.inputs, options.output, options.batch);
     if (!options.volume.empty() && !options.report.isWanted()) {
         throw UsageError("--volume: is shown on the page; it needs --report or --pictures");
     }
@@ -66,6 +67,12 @@ void checkCombinations(const LabelsOptions& options) {
     if (options.joinsMasks && options.batch.isRequested()) {
         throw UsageError(
             "--join: makes one map of all INPUTs; many maps of masks are folders of a batch");
+    }
+    if (options.inputs.size() > 1 && !options.joinsMasks && !options.output.empty() &&
+        !holdsName(options.output)) {
+        throw UsageError("--output " + options.output.string() +
+                         ": several INPUTs make a folder each, -o '{name}-labels'; or with --join "
+                         "one map of masks");
     }
     if (options.joinsMasks && options.output.empty()) {
         throw UsageError("--join: needs -o DIR, as no input names the map");

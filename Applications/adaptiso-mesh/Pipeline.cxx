@@ -289,6 +289,12 @@ void warnOfSurfaces(MeshRun& run) {
         auto noise =
             noiseWarning(surface, run.options.extraction, meshedGeometry(run), "--max-error ");
         if (noise) noise->file = surface.file.filename().string();
+        if (noise && !run.options.preprocessing.smoothSigmaMm) {
+            constexpr double kVoxels = 0.7;
+            noise->text += "; --smooth " +
+                           formatShort(kVoxels * leastPlaneDistanceMm(meshedGeometry(run))) +
+                           " weakens it in the image";
+        }
         for (const auto& warning :
              {countWarning(surface, run.options), digitsWarning(surface, run),
               insideOutWarning(surface), noise, sizeWarning(surface, run.options)}) {

@@ -52,6 +52,7 @@ void checkCombinations(const MeshOptions& options) {
     if (options.inputs.empty() && options.batch.list.empty()) {
         throw UsageError("INPUT is missing: the image to make surfaces of");
     }
+    refuseOutputAsInput(options.inputs, options.output, options.batch);
     checkLookingOnly(options);
     if (options.isovalues.empty() && !options.image.listsSeries && !options.image.tellsInfo) {
         throw UsageError(

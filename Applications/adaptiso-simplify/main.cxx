@@ -31,6 +31,7 @@ void checkCombinations(const SimplifyCommand& command) {
     if (command.inputs.empty() && command.batch.list.empty()) {
         throw UsageError("MESH is missing: the surface to simplify");
     }
+    refuseOutputAsInput(command.inputs, command.output, command.batch);
     checkInputCoordinates(command.inputCoordinates, 1);
     checkAim(command.aim);
     const bool hasFolder = !command.batch.outputFolder.empty();

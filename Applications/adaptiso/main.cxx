@@ -44,7 +44,9 @@ std::string footer() {
            "\nExamples:\n"
            "  adaptiso mesh brain.nii.gz --iso 100\n"
            "      the same as: adaptiso-mesh brain.nii.gz --iso 100\n"
-           "  adaptiso mesh --help\n\n"
+           "  adaptiso mesh --help\n"
+           "  adaptiso help mesh iso\n"
+           "      of its --help the part on --iso\n\n"
            "Exit codes: those of the program; 2 when there is no such program.";
 }
 
@@ -65,7 +67,12 @@ int refuse(const Options& options) {
     throw UsageError(shown(typed) + ": there is no such program" + suggestion(typed, words));
 }
 
+bool isProgram(std::string_view word) {
+    return std::ranges::any_of(kPrograms, [&](const Entry& entry) { return word == entry.word; });
+}
+
 /// Becomes the program that lies beside this one. \return only if it cannot be started
+/// \param argv  its arguments follow the second
 int start(const std::string& word, char** argv) {
     const std::string name = "adaptiso-" + word;
     std::error_code error;
@@ -83,12 +90,19 @@ int start(const std::string& word, char** argv) {
 
 int main(int argc, char** argv) {
     using namespace adaptiso::starter;
-    const std::string word = argc > 1 ? argv[1] : "--help";
-    const auto names = [&](const Entry& entry) { return word == entry.word; };
-    if (std::ranges::any_of(kPrograms, names)) return start(word, argv);
-    const char* const help[] = {argv[0], "--help"};
+    const std::string word = argc > 1 ? argv[1] : "help";
+    if (isProgram(word)) return start(word, argv);
+    const bool helps = word == "help" || word == "--help" || word == "-h";
+    if (helps && argc > 2 && isProgram(argv[2])) {  // "help mesh iso": "mesh --help iso"
+        const std::string program = argv[2];
+        std::string option = "--help";
+        argv[2] = option.data();
+        return start(program, argv);
+    }
+    const bool isOwn = argc < 2 || word == "help";
+    const char* const own[] = {argv[0], argc > 2 ? argv[2] : "--help"};
     return adaptiso::runApp(
-        std::max(argc, 2), argc > 1 ? argv : help,
+        isOwn ? 2 : argc, isOwn ? own : argv,
         {"adaptiso", "Starts the programs of adaptiso: adaptiso mesh ... is adaptiso-mesh ...",
          footer()},
         declareOptions, refuse);

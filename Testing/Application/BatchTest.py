@@ -1,5 +1,6 @@
 """Many inputs: a run for each, told in a line; lists and BIDS datasets; going on after an end."""
 
+import csv
 import html.parser
 import json
 import os
@@ -64,8 +65,10 @@ class ManyInputs(BatchTest):
         told = [line.split(",")[0] for line in done.stdout.splitlines()]
         self.assertEqual(told[0], "done    c.nii: c-iso100.vtp")
         self.assertRegex(told[1], r"^FAILED  bad.nii: .*no NIfTI header")
-        self.assertEqual(told[2:], ["done    a.nii: a-iso100.vtp", "done    b.nii: b-iso100.vtp",
-                                    "4 inputs"])
+        self.assertEqual(told[2:5], ["done    a.nii: a-iso100.vtp", "done    b.nii: b-iso100.vtp",
+                                     "4 inputs"])
+        self.assertRegex(told[5], r"^  1 failed: truncated: N bytes .*: bad.nii$")
+        self.assertEqual(told[6:], ["Next: mend what failed"])
         self.assertEqual(done.stderr, "")
 
     def test_are_the_same_as_single_runs_to_the_byte(self):
@@ -93,9 +96,22 @@ class ManyInputs(BatchTest):
         self.assertRegex(self.batch(CHECK_FAILED, ".", "--iso", 100, "--output-dir", "of here").stdout,
                          r"FAILED  \.?[^:]*: no DICOM file found in this folder: it holds \d+ NIfTI files; .*\*\.nii")
         done = self.batch(OK, "a.nii", "b.nii", "--iso", 100, "--output-dir", "out")
-        self.assertTrue(done.stdout.endswith("2 inputs, 0 failed\nWrote out/summary.html\n"), done.stdout)
+        self.assertTrue(done.stdout.endswith("2 inputs, 0 failed\nWrote out/summary.html; next: open "
+                                             "out/summary.html in a browser\n"), done.stdout)
         text = self.path("lines.json").read_text().splitlines()
         self.assertEqual([json.loads(line)["passed"] for line in text], [True, True])
+
+    def test_a_table_has_a_line_for_each_surface(self):
+        self.path("a.nii").rename(self.path("=a, b.nii"))
+        done = self.batch(CHECK_FAILED, "=a, b.nii", "bad.nii", "--iso", 80, "--iso", 100, "--csv", "t.csv")
+        with open(self.path("t.csv"), newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(row["input"], row["state"], row["output"], row["isovalue"]) for row in rows],
+                         [("'=a, b.nii", "done", "'=a, b-iso80.vtp", "80.0"),
+                          ("'=a, b.nii", "done", "'=a, b-iso100.vtp", "100.0"), ("bad.nii", "failed", "", "")])
+        self.assertGreater(float(rows[0]["volumeMm3"]), float(rows[1]["volumeMm3"]))
+        self.assertIn("2 inputs, 1 failed\n  1 failed: truncated: ", done.stdout)
+        self.assertRegex(rows[2]["result"], "^truncated: .* bytes")
 
     def test_quiet_tells_what_failed_on_stderr(self):
         done = self.batch(CHECK_FAILED, "a.nii", "bad.nii", "--iso", 100, "--quiet")

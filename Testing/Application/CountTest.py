@@ -180,12 +180,13 @@ class Noise(ApplicationTest):
         whole, warnings = self.made()
         self.assertEqual([w["code"] for w in warnings], ["noise-kept"])
         self.assertEqual(whole["adaptive"]["trianglesKept"], whole["triangles"])
-        bound = re.search(r"^100 % of the triangles are noise.*--max-error (\S+), half a voxel, thins it$",
-                          warnings[0]["text"])[1]
+        bound, sigma = re.search(r"^100 % of the triangles are noise.*--max-error (\S+), half a voxel, thins it; "
+                                 r"--smooth (\S+) weakens it in the image$", warnings[0]["text"]).groups()
         thinned, warnings = self.made("--max-error", bound)
         self.assertEqual(warnings, [])
         self.assertLessEqual(thinned["errorBoundMm"], float(bound))
         self.assertLess(thinned["triangles"], whole["triangles"] / 2)
+        self.assertLess(self.made("--smooth", sigma)[0]["triangles"], whole["triangles"] / 2)
 
     def test_is_simplified_within_any_stated_bound_also_the_default_s(self):
         whole, _ = self.made()

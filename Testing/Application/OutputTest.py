@@ -292,6 +292,20 @@ class Streams(ApplicationTest):
         self.assertIn("ball-iso100.vtp", done.stdout)
         self.assertTrue(self.path("report.json").read_text().startswith("{"))
 
+    def test_a_log_has_steps_and_errors_with_their_times(self):
+        self.mesh("ball.nii", "--iso", "100", "--quiet", "--log", "run.log")
+        self.run_mesh("ball.nii", "--iso", "7000", "--log", "run.log")
+        lines = self.path("run.log").read_text().splitlines()
+        for line in lines:
+            self.assertRegex(line, r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ \d+\.\d s  \S")
+        texts = [line.split("  ", 1)[1] for line in lines]
+        self.assertRegex(texts[0], r"^adaptiso-mesh \d")
+        self.assertEqual(texts[1:4], ["read", "index", "extract"])
+        end = texts.index("ended with exit code 0")
+        self.assertRegex(texts[end + 1], "^adaptiso-mesh ")
+        self.assertRegex(texts[-2], "^--iso 7000: no voxel reaches it")
+        self.assertEqual(texts[-1], "ended with exit code 3")
+
     def test_progress_is_for_terminals_only(self):
         leader, follower = os.openpty()
         done = subprocess.run([MESH, "ball.nii", "--iso", "100"], cwd=self.folder, stderr=follower,

@@ -1,10 +1,11 @@
 """What the programs say to a wrong command line: one line that names option or file, says what
 is wrong and what to do, and no word of the programs' insides."""
 
+import json
 import re
 import subprocess
 
-from support import (BAD_INPUT, BIN, USAGE, ApplicationTest, ball, from_function, main,
+from support import (BAD_INPUT, BIN, SOURCE, USAGE, ApplicationTest, ball, from_function, main,
                      write_4d_nifti, write_nifti)
 from headDefects import write_off
 
@@ -62,9 +63,14 @@ WRONG = [
     (USAGE, r"--voxels: .*did you mean --voxel\?", COMPARE, ("a.off", "a.off", "--voxels", "1")),
     (USAGE, r"--brain-msk: .*did you mean --brain-mask\?", BEM,
      ("--t1", "ball.nii", "--brain-msk", "x", "-o", "m")),
-    # what other programs call them; nothing where no option does that
-    (USAGE, r"--hollow: there is no such option \(see", MESH, (*BALL, "--hollow", "2")),
-    (USAGE, r"--verbose: there is no such option \(see", MESH, (*BALL, "--verbose")),
+    # what other programs call them
+    (USAGE, r"--hollow: there is no such option; no program makes shells", MESH, (*BALL, "--hollow", "2")),
+    (USAGE, r"--verbose: there is no such option; progress .* unless --quiet", MESH, (*BALL, "--verbose")),
+    (USAGE, r"--Target_Faces: .*did you mean --triangles\?", SIMPLIFY, ("a.off", "--Target_Faces=9")),
+    (USAGE, r"--ico: there is no such option; --vertices 2562 is ico 4", BEM,
+     ("--t1", "ball.nii", "-o", "m", "--ico", "4")),
+    (USAGE, r"-i: there is no such option; inputs need no option", MESH, ("-i", "ball.nii", "--iso", "100")),
+    (USAGE, r"-i: .*did you mean --t1\?", BEM, ("-i", "ball.nii", "-o", "m")),
     (USAGE, r"--threshold: .*did you mean --iso\?", MESH, ("ball.nii", "--threshold", "100")),
     (USAGE, r"--decimate: .*did you mean --reduction\?", SIMPLIFY, ("a.off", "--decimate", "0.5")),
     (USAGE, r"--overwrite: .*did you mean --force\?", BEM, ("--t1", "ball.nii", "-o", "m", "--overwrite")),
@@ -72,6 +78,17 @@ WRONG = [
     (USAGE, r"--n_cpus: .*did you mean --jobs\?", MESH, (*BALL, "--n_cpus", "2")),
     (USAGE, r"--color: .*did you mean --picture-color\?", MESH, (*BALL, "--color", "red")),
     (USAGE, r"--qc: .*did you mean --report\?", MESH, (*BALL, "--qc", "x.html")),
+    # what other programs take
+    (USAGE, r"--reduction 50: must be a number from 0 to 1; 50 % is 0.5 \(see", MESH, (*BALL, "--reduction", "50")),
+    (USAGE, "o.stl: there is no such input; an output is given as -o o.stl", MESH, ("ball.nii", "o.stl")),
+    (USAGE, "o.stl: there is no such input; an output is given as -o o.stl", SIMPLIFY, ("a.off", "o.stl")),
+    (USAGE, "o.stl: is one argument too many; .* MESH and options; an output is given as -o o.stl",
+     "adaptiso-mend", ("a.off", "o.stl")),
+    (USAGE, "--output both: several INPUTs make a folder each, .* or with --join one map", "adaptiso-labels",
+     ("ball.nii", "flat.nii", "-o", "both")),
+    (USAGE, "--conductivity: its numbers have commas and no blanks between them; give 0.3,0.006,0.3 ", BEM,
+     ("--t1", "ball.nii", "-o", "m", "--conductivity", "0.3,", "0.006", "0.3")),
+    (BAD_INPUT, "--log ball.nii: exists and is no log; name a new file", MESH, (*BALL, "--log", "ball.nii")),
     # a folder that is named like a file
     (USAGE, r"--output bones.stl: is a folder to make.*-o bones --format stl", "adaptiso-labels",
      ("ball.nii", "-o", "bones.stl")),
@@ -138,7 +155,7 @@ WRONG = [
     (USAGE, "--triangles 1.5: must be a whole number", MESH, (*BALL, "--triangles", "1.5")),
     (USAGE, "--triangles many: must be a whole number", MESH, (*BALL, "--triangles", "many")),
     (USAGE, "--reduction 2: must be a number from 0 to 1", MESH, (*BALL, "--reduction", "2")),
-    (USAGE, "--reduction 50%: must be a number from 0 to 1", MESH, (*BALL, "--reduction", "50%")),
+    (USAGE, "--reduction 50%: must be a number from 0 to 1; 50 % is 0.5", MESH, (*BALL, "--reduction", "50%")),
     (USAGE, "--min-angle 41: must be a number from 0 to 40, in degrees", MESH,
      (*BALL, "--min-angle", "41")),
     (USAGE, "--min-volume -1: must be a number, 0 or more, in mm3", MESH,
@@ -295,6 +312,53 @@ class WrongCommandLines(ApplicationTest):
                 self.assertEqual(self.contents(), before)
 
 
+class Habits(ApplicationTest):
+    """The rows of Habits.cxx: what each names, the program has for which it is given."""
+
+    def setUp(self):
+        super().setUp()
+        text = (SOURCE / "Applications/Common/Habits.cxx").read_text()
+        body = re.search(r"kHabits\[\] = \{\n(.*?)\n\};", text, re.S)[1]
+        body = re.sub(r"//.*", "", body)
+        body = re.sub(r'"\s*\n\s*"', "", body)  # a string on two lines
+        self.rows = [[part.split() if n < 2 else part for n, part in enumerate(row)] for row in
+                     re.findall(r'\{"([^"]*)",\s*"([^"]*)",\s*"([^"]*)",\s*"([^"]*)"\}', body)]
+        self.assertEqual(len(self.rows), body.count("{"))
+        self.options = {}
+        for program in sorted(path.name for path in BIN.glob("adaptiso-*")):
+            said = json.loads(subprocess.run([BIN / program, "--help-json"], capture_output=True,
+                                             check=True).stdout)
+            names = [name for option in said["options"] for name in option["names"]]
+            self.options[program.removeprefix("adaptiso-")] = names
+
+    def test_name_options_of_the_program(self):
+        used = set()
+        for program, names in self.options.items():
+            given = set()  # words that a row above answers
+            for n, (words, programs, option, answer) in enumerate(self.rows):
+                with self.subTest((program, words[0])):
+                    if programs:
+                        self.assertLessEqual(set(programs), set(self.options))
+                        if program in programs and option:
+                            self.assertIn("--" + option, names)
+                    if programs and program not in programs or option and "--" + option not in names:
+                        continue
+                    new = {word for word in words if word not in given
+                           and not {"-" + word, "--" + word} & set(names)}
+                    given |= set(words)
+                    if not new:
+                        continue
+                    used.update((n, word) for word in new)
+                    self.assertTrue(option or answer)
+                    for name in re.findall(r"--[a-z][a-z-]*", answer):
+                        self.assertIn(name, names, answer)
+                    for other in re.findall(r"adaptiso-([a-z]+)", answer):
+                        self.assertIn(other, self.options)
+                        self.assertNotEqual(other, program)
+        dead = [word for n, row in enumerate(self.rows) for word in row[0] if (n, word) not in used]
+        self.assertEqual(dead, [])
+
+
 class Help(ApplicationTest):
     def test_is_in_words(self):
         for program in (MESH, CHECK, COMPARE, BEM):
@@ -306,6 +370,17 @@ class Help(ApplicationTest):
                 for line in text.splitlines():
                     self.assertLessEqual(len(line), 100, line)
 
+    def test_of_one_option(self):
+        def printed(*command):
+            return subprocess.run([BIN / command[0], *command[1:]], text=True, check=True, capture_output=True).stdout
+        said = printed(MESH, "--help", "--ISO")
+        self.assertRegex(said, r"^  --iso V\|auto .*The isovalue: (.|\n)* for several surfaces\n$")
+        self.assertNotIn("--info", said)
+        self.assertEqual(printed("adaptiso", "help", "mesh", "iso"), said)
+        self.assertRegex(printed(MESH, "-h", "threshold"), r"^threshold: did you mean --iso\?\n  --info ")
+        self.assertRegex(printed("adaptiso", "help"), "(?m)^  mesh  .*surfaces of an image")
+        done = subprocess.run([BIN / MESH, "--help", "frobnicate"], text=True, capture_output=True)
+        self.assertEqual((done.returncode, done.stdout), (USAGE, ""))
 
     def test_short_names_every_group(self):
         for program in (MESH, CHECK, COMPARE, BEM, SIMPLIFY, "adaptiso-mend", "adaptiso-labels", "adaptiso-bids",

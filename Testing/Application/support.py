@@ -5,6 +5,7 @@ import json
 import math
 import os
 import random
+import re
 import shutil
 import struct
 import subprocess
@@ -55,6 +56,11 @@ def onion():
         r = math.sqrt(x * x + y * y + z * z)
         return max(4 - r, min(r - 8, 13 - r))
     return from_function(32, "f", value)
+
+
+def without_progress(stderr):
+    """What a run printed but for the line of each minute."""
+    return re.sub(r"(?m)^.*, \d+ s\n", "", stderr)
 
 
 def noise(n=72):

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace adaptiso {
+
+/// Opens the file of --log, a new one or an earlier log. \throws FileError
+void openLog(const std::filesystem::path& file);
+
+bool isLogOpen();
+
+/// Adds a line with date and seconds since openLog() to the file of --log, if there is one.
+void addToLog(std::string_view text);
+
+}  // namespace adaptiso
