@@ -607,6 +607,7 @@ MeshFile decodeGlb(std::string_view bytes, const MeshReadOptions& options) {
         if (type == kJsonChunk && text.empty()) text = chunk;
         if (type == kBinChunk && bin.empty()) bin = chunk;
     }
+    text = text.substr(0, text.find_last_not_of('\0') + 1);  // programs that pad it so
     const GltfJson file = parseJson<GltfJson>(text);
     if (!file.is_object()) malformed("its JSON can't be read");
     try {

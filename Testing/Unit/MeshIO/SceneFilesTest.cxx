@@ -110,6 +110,18 @@ TEST(GlbFile, NodesPlaceMeshesByMatrixAndByParts) {
     EXPECT_EQ(mirror.mesh.triangles.front(), (Triangle{0, 2, 1}));
 }
 
+TEST(GlbFile, JsonThatIsPaddedByZerosIsRead) {
+    int padded = 0;
+    for (const char* const more : {R"(,"extras":1)", R"(,"extras":11)"}) {
+        std::string bytes = Square{.more = more}.bytes();
+        for (std::size_t i = bytes.find("BIN") - 4; bytes[i - 1] == ' '; --i, ++padded) {
+            bytes[i - 1] = '\0';
+        }
+        EXPECT_EQ(decoded(bytes, "a.glb").mesh.triangles.size(), 2U);
+    }
+    EXPECT_GT(padded, 0);
+}
+
 TEST(GlbFile, NumbersThatAreMillimetresAreWarnedOf) {
     const MeshFile file = Square{.nodes = R"([{"mesh":0,"scale":[300,400,1]}])"}.read();
     EXPECT_EQ(findCode(file, "unit-converted")->text,
