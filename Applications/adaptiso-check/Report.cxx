@@ -90,6 +90,20 @@ std::string_view word(const Check& check) {
     return "";
 }
 
+bool isForPrinter(const CheckRun& run) {
+    return run.options.profile == Profile::Print;
+}
+
+/// The checks of a surface without those of solvers, where a print is asked for.
+std::vector<Check> shownChecks(const SurfaceRun& surface, const CheckRun& run) {
+    std::vector<Check> shown = surface.checks;
+    std::erase_if(shown, [&](const Check& check) {
+        return isForPrinter(run) && !check.isRequired &&
+               (check.key == "solidAngle" || check.key == "minAngle");
+    });
+    return shown;
+}
+
 void printChecks(std::ostream& out, const std::vector<Check>& checks) {
     for (const Check& check : checks) {
         out << "  " << std::left << std::setw(24) << check.name;
@@ -127,14 +141,14 @@ void printSpread(std::ostream& out, std::string_view name, const Spread& spread,
         << formatLength(spread.maximum, digits) << '\n';
 }
 
-void printFacts(std::ostream& out, const SurfaceFacts& facts) {
+void printFacts(std::ostream& out, const SurfaceFacts& facts, bool isForPrinter) {
     const auto genus = facts.topology.genus();
     out << "  area " << formatMeasure(facts.areaMm2) << " mm2";
     if (facts.volumeMm3) out << ", volume " << formatMeasure(*facts.volumeMm3) << " mm3";
     out << ", " << counted(std::ssize(facts.topology.components), "component");
     if (genus) out << ", genus " << *genus;
     out << '\n';
-    if (facts.shape.triangles == 0) return;
+    if (facts.shape.triangles == 0 || isForPrinter) return;
     out << "  of triangles            smallest / median / largest\n";
     printSpread(out, "smallest angle, degrees", facts.shape.angleDeg, 2);
     printSpread(out, "aspect ratio", facts.shape.aspectRatio, 2);
@@ -161,8 +175,8 @@ void printSurface(std::ostream& out, const SurfaceRun& surface, const CheckRun& 
     out << surface.format->name << ", " << frameText(surface.frame) << ", "
         << formatCount(surface.facts.topology.triangles) << " triangles, "
         << formatCount(surface.facts.topology.vertices) << " vertices\n";
-    printChecks(out, surface.checks);
-    printFacts(out, surface.facts);
+    printChecks(out, shownChecks(surface, run));
+    printFacts(out, surface.facts, isForPrinter(run));
     if (run.options.measuresWalls) out << "  to print: " << printText(surface.facts) << '\n';
     printVerdict(out, surface.checks, run);
 }
@@ -560,7 +574,7 @@ Report makeReport(const CheckRun& run, ShownSurfaces& shown) {
     Report report;
     for (const NestingRun& pair : run.nesting) addChecks(pairName(run, pair), pair.checks, report);
     for (const SurfaceRun& surface : run.surfaces) {
-        addChecks(baseName(surface.file), surface.checks, report);
+        addChecks(baseName(surface.file), shownChecks(surface, run), report);
     }
     addNotes(run.notes, report);
     addVerdict(run, report);

@@ -22,8 +22,12 @@ struct FileKind {
     bool isRequested = true;
 };
 
+std::string regionFiles(const LabelsRun& run) {
+    return run.isScene ? baseName(run.folder) : "regions/*" + run.options.format;
+}
+
 std::vector<FileKind> kindsOf(const LabelsRun& run) {
-    std::vector<FileKind> kinds{{run.format, "regions/*" + run.options.format}};
+    std::vector<FileKind> kinds{{run.format, regionFiles(run)}};
     if (run.options.writesLayers) kinds.push_back({&findMeshFormat("wall.tri"), "layers/*.tri"});
     kinds.push_back({&findMeshFormat("all.surf.gii"), "all.surf.gii", false});
     return kinds;
@@ -58,7 +62,7 @@ void measureRounding(const TriangleMesh& walls, const std::vector<Vec3>& exact,
         run.warnings.push_back({"file-left-out", "all.surf.gii is left out; " + text, input});
     }
     if (!run.requestedBoundMm()) return;
-    const auto warning = roundingWarning("regions/*" + run.options.format, run.errorBoundMm(),
+    const auto warning = roundingWarning(regionFiles(run), run.errorBoundMm(),
                                          *run.requestedBoundMm(), run.roundingMm, *run.format);
     if (warning) run.warnings.push_back(*warning);
 }

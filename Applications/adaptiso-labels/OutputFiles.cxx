@@ -16,6 +16,7 @@
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/LabelFiles.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/MeshIO/Scene.h"
 #include "adaptiso/Tetrahedra/Tetrahedra.h"
 
 namespace adaptiso::labels {
@@ -252,6 +253,20 @@ std::string regionsTable(const LabelsRun& run) {
         text += writtenCell(neighbours) + '\n';
     }
     return text;
+}
+
+void writeSceneFile(const RegionSurfaces& surfaces, LabelsRun& run) {
+    std::vector<ScenePart> parts;
+    for (std::size_t n = 0; n < run.regions.size(); ++n) {
+        const Region& region = run.regions[n];
+        TriangleMesh surface = surfaces.surface(n);
+        if (run.format->holdsNormals) surface.normals = areaWeightedNormals(surface);
+        parts.push_back({region.name, region.color, std::move(surface)});
+    }
+    AtomicOutput& output = run.addOutput(run.folder);
+    output.write(
+        [&](const fs::path& path) { writeScene(std::move(parts), path, writeOptions(run)); });
+    run.files = {{baseName(run.folder), fs::file_size(output.temporary())}};
 }
 
 void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, const Volume& map,

@@ -73,6 +73,10 @@ bool fitsGifti(const LabelsRun& run);
 void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, const Volume& map,
                 LabelsRun& run, AtomicFolder& folder);
 
+/// Writes the regions' surfaces with their names and colours into the one file that is the run's
+/// output (LabelsRun::isScene). \throws FileError, InvalidInput  as writeScene()
+void writeSceneFile(const RegionSurfaces& surfaces, LabelsRun& run);
+
 /// regions.tsv.
 std::string regionsTable(const LabelsRun& run);
 

@@ -22,6 +22,7 @@
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Files/AtomicOutput.h"
+#include "adaptiso/MeshIO/Scene.h"
 
 namespace adaptiso::labels {
 namespace {
@@ -62,9 +63,13 @@ void checkOutputs(const LabelsRun& run) {
                                  options.priority.list};
     for (const MaskSource& mask : options.masks) inputs.push_back(mask.file);
     OutputPlan plan(inputs);
-    plan.checkFolder(run.folder);
+    if (run.isScene) {
+        plan.add("--output", run.folder);
+    } else {
+        plan.checkFolder(run.folder);
+    }
     plan.check(options.common, options.report);
-    AtomicFolder::check(run.folder, replaceable(options, run.folder));
+    if (!run.isScene) AtomicFolder::check(run.folder, replaceable(options, run.folder));
 }
 
 /// Labels of a merge that the map has not.
@@ -214,11 +219,24 @@ int runLabelsBatch(const LabelsOptions& options) {
 
 }  // namespace
 
+const MeshFormat* sceneFormatOf(const fs::path& output) {
+    std::error_code error;
+    const std::string extension = lowerCase(output.extension().string());
+    for (const MeshFormat& format : meshFormats()) {
+        const bool isMeant =
+            std::ranges::find(format.extensions, extension) != format.extensions.end();
+        if (isMeant && holdsScene(format) && !fs::is_directory(output, error)) return &format;
+    }
+    return nullptr;
+}
+
 int runLabels(const LabelsOptions& given) {
     if (given.isBatch()) return runLabelsBatch(given);
     LabelsOptions options = given;
     LabelsRun run(options, outputFolder(options));
-    run.format = &findMeshFormat("region" + options.format);
+    const MeshFormat* const scene = sceneFormatOf(options.output);
+    run.isScene = run.leavesGiftiOut = scene != nullptr;
+    run.format = scene != nullptr ? scene : &findMeshFormat("region" + options.format);
     run.frame = outputFrame(options.frame, *run.format);
     run.stage("read", [&] { findMasks(options, run); });
     checkOutputs(run);
@@ -256,6 +274,7 @@ int runLabels(const LabelsOptions& given) {
     std::optional<AtomicFolder> folder;
     if (run.writesFolder()) {
         run.stage("write", [&] {
+            if (run.isScene) return writeSceneFile(surfaces, run);
             folder.emplace(run.folder, replaceable(options, run.folder));
             writeFiles(complex, surfaces, volume, run, *folder);
             folder->writeText("report.json", folderReport(run));
@@ -272,6 +291,10 @@ int runLabels(const LabelsOptions& given) {
     if (std::ranges::find(run.files, "all.vtm", [](const auto& file) { return file.first; }) !=
         run.files.end()) {
         run.next = "open " + shellQuoted((run.folder / "all.vtm").string()) + " in ParaView";
+    } else if (run.isScene && run.writesFolder()) {
+        run.next = "open " + shellQuoted(run.folder.string()) +
+                   (run.format->holdsNormals ? " in Blender or another viewer of glTF"
+                                             : " in a printer's slicer");
     }
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); },
                 folder ? &*folder : nullptr);

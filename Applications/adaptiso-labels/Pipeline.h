@@ -37,7 +37,9 @@ struct LabelsOptions {
     MesherOptions tetrahedra;
     bool writesLayers = false;               ///< the walls for OpenMEEG
     std::map<Label, double> conductivities;  ///< of regions, S/m; empty: none are written
-    std::filesystem::path output;  ///< a folder; empty: "<input>-labels" in the current one
+    /// A folder, or a file of all regions (sceneFormatOf()); empty: "<input>-labels" in the current
+    /// folder.
+    std::filesystem::path output;
     bool mayReplace = false;
     bool writesMap = false;
     bool namesFiles = false;               ///< of regions by their names, else by their labels
@@ -53,6 +55,9 @@ struct LabelsOptions {
                holdsName(report.page) || holdsName(report.pictures);
     }
 };
+
+/// The format of one file for all regions, if `output` names such a file; null for a folder.
+const MeshFormat* sceneFormatOf(const std::filesystem::path& output);
 
 /// Reads the label map, extracts and checks the walls, and writes the folder, whole or not at all.
 /// \return an exit code; kExitCheckFailed when the complex does not keep its promises

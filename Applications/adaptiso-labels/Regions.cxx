@@ -250,7 +250,8 @@ void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, La
         }
         region.hasOwnName = !region.name.empty();
         if (!region.hasOwnName) region.name = "region " + idText(id);
-        region.file = "regions/" + idText(id) + run.options.format;
+        region.file =
+            run.isScene ? baseName(run.folder) : "regions/" + idText(id) + run.options.format;
     }
     const std::vector<LabelColor> colors = labelColors(labels, given);
     for (std::size_t n = 0; n < colors.size(); ++n) run.regions[n].color = colors[n];

@@ -290,14 +290,16 @@ std::vector<std::size_t> chooseShown(const LabelsRun& run, Report& report) {
     std::ranges::sort(shown);
     report.notes.push_back("The page shows the " + formatCount(kMostShown) + " largest of " +
                            formatCount(std::ssize(run.regions)) +
-                           " regions; all are in the folder and in regions.tsv.");
+                           " regions; all are in the output.");
     return shown;
 }
 
 Json resultJson(const LabelsRun& run) {
     std::vector<std::string> files;
     if (run.writesFolder()) {
-        for (const auto& file : run.files) files.push_back(baseName(run.folder) + "/" + file.first);
+        for (const auto& file : run.files) {
+            files.push_back((run.isScene ? "" : baseName(run.folder) + "/") + file.first);
+        }
     }
     const auto failed = std::ranges::find(run.checks, false, &LabelsCheck::isPassed);
     const std::string says = failed != run.checks.end()
@@ -336,7 +338,7 @@ std::string jsonReport(const LabelsRun& run) {
     Json json = sharedJson(run);
     json["passed"] = run.verdict.exitCode == kExitOk;
     Json& output = json["output"];
-    output["folder"] = baseName(run.folder);
+    output["folder"] = run.isScene ? Json() : Json(baseName(run.folder));
     output["written"] = run.writesFolder();
     output["files"] = Json::array();
     for (const auto& [name, bytes] : run.files) {

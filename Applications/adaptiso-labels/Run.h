@@ -72,6 +72,7 @@ struct LabelsRun : ProgramRun {
 
     const LabelsOptions& options;
     std::filesystem::path folder;  ///< the output
+    bool isScene = false;          ///< it is one file of all regions
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
     MapSummary map{};

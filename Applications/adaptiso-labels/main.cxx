@@ -86,9 +86,25 @@ void checkCombinations(const LabelsOptions& options) {
     requireDisjoint(options.merges);
     const std::filesystem::path& output = options.output;
     const std::string extension = output.extension().string();
-    requireFolderName("--output", output,
-                      "give -o " + shellQuoted((output.parent_path() / output.stem()).string()) +
-                          (extension.empty() ? "" : " --format " + extension.substr(1)));
+    if (sceneFormatOf(output) != nullptr) {
+        const std::pair<bool, const char*> folders[] = {
+            {options.format != LabelsOptions().format, "--format"},
+            {options.namesFiles, "--file-names"},
+            {options.writesMap, "--write-map"},
+            {options.writesLayers, "--layers"},
+            {options.tetrahedra.isRequested(), "--tetrahedra"}};
+        for (const auto& [isGiven, option] : folders) {
+            if (!isGiven) continue;
+            throw UsageError(std::string(option) + ": is for a folder, and -o " + output.string() +
+                             " is one file of all regions; give -o " +
+                             shellQuoted((output.parent_path() / output.stem()).string()));
+        }
+    } else {
+        requireFolderName("--output", output,
+                          "give -o " +
+                              shellQuoted((output.parent_path() / output.stem()).string()) +
+                              (extension.empty() ? "" : " --format " + extension.substr(1)));
+    }
     checkPlaceholders({{"--output", options.output},
                        {"--report", options.report.page},
                        {"--pictures", options.report.pictures}},
@@ -166,7 +182,7 @@ void declareOutput(CLI::App& app, LabelsOptions& options) {
     const OptionGroup output(app, kOutput);
     output.text("-o,--output", "DIR", options.output,
                 "The folder to write, whole or not at all (default: <INPUT>-labels in the "
-                "current folder)");
+                "current folder); a file .glb or .3mf: all regions in it, with names and colours");
     output.flag("--force", options.mayReplace,
                 "Replace a folder that this program wrote; one that holds other files is not");
     output.value(
@@ -208,6 +224,9 @@ constexpr const char* kFooter = R"(Examples:
       the walls for OpenMEEG as well, in the folder layers
   adaptiso-labels masks -o body --write-map
       a folder of masks, a file for each region, joined to one map
+  adaptiso-labels totalseg.nii.gz -o body.glb
+      one file of all regions with names and colours, for viewers and slides;
+      body.3mf for printers
   adaptiso-labels *_dseg.nii.gz --output-dir surfaces --skip-existing
       each image a run of its own
 

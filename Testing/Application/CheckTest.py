@@ -219,7 +219,10 @@ class Profiles(CheckTest):
         # a wall that is thick enough has its place too
         self.check("shell.off", "--profile", "print", "--min-wall", 0.4, "--report", "thick.html")
         self.assertIn('data-spot="1">thinnest wall, 0.50 mm, in shell.off</button>', self.path("thick.html").read_text())
-        self.assertIn("  to print: " + to_print, self.run_check("shell.off", "--profile", "print").stdout)
+        text = self.run_check("shell.off", "--profile", "print").stdout
+        self.assertIn("  to print: " + to_print, text)
+        self.assertIn("adaptiso-mesh --largest --fill-cavities leaves one", text)
+        self.assertNotIn("angle", text.replace("triangle", ""))  # nor MNE's
         self.assertEqual(self.surface(shell, "--min-wall", 0.4, "--profile", "view")["failed"], [])
         self.assertEqual(self.surface(shell, "--min-wall", 0.6)["failed"], ["minWall"])
         self.assertIsNone(self.surface(shell)["walls"])  # not asked for

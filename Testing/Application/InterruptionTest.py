@@ -225,7 +225,8 @@ class NoThreads(AllPrograms):
 
 
 class NoRoom(ApplicationTest):
-    EXTENSIONS = (".vtp", ".vtk", ".ply", ".stl", ".obj", ".off", ".gii", ".pial", ".tri")
+    EXTENSIONS = (".vtp", ".vtk", ".ply", ".stl", ".obj", ".off", ".gii", ".pial", ".tri", ".glb",
+                  ".3mf")
 
     def setUp(self):
         super().setUp()

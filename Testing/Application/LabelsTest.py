@@ -6,6 +6,7 @@ import math
 import random
 import re
 import struct
+import zipfile
 import zlib
 
 from labelsSupport import LabelsTest, label_map, three_boxes
@@ -76,7 +77,8 @@ class OutputTest(LabelsTest):
                 self.assertEqual(contacts[b, a][1], triangles)
 
     def test_every_format(self):
-        for extension in ("vtk", "ply", "stl", "obj", "off", "gii", "tri", "surf"):
+        for extension in ("vtk", "ply", "stl", "obj", "off", "gii", "tri", "surf", "glb",
+                          "3mf"):
             with self.subTest(extension):
                 self.labels("boxes.nii", "-o", extension, "--format", extension, "--quiet")
                 files = self.files(extension)
@@ -86,6 +88,58 @@ class OutputTest(LabelsTest):
                 self.assertIn(b'file="all/7.vtp"', files["all.vtm"])
                 frame = self.folder_report(extension)["output"]["coordinates"]
                 self.assertEqual(frame, "tkras" if extension == "surf" else "ras")
+
+    def assert_closed(self, corners):
+        edges = set()
+        for a, b, c in zip(*[iter(corners)] * 3):
+            for edge in ((a, b), (b, c), (c, a)):
+                self.assertNotIn(edge, edges)
+                edges.add(edge)
+        self.assertEqual({(b, a) for a, b in edges}, edges)
+
+    def test_all_regions_in_one_file(self):
+        self.path("boxes.tsv").write_text("index\tname\tcolor\n1\tA & B\t#ff8000\n7\tCore\t#0000ff\n")
+        for name in ("body.glb", "body.3mf"):
+            report = json.loads(self.labels("boxes.nii", "-o", name, "--json", "-").stdout)
+            self.assertEqual(report["output"]["files"],
+                             [{"file": name, "bytes": len(self.files()[name])}])
+            self.assertIsNone(report["output"]["folder"])
+            self.assertEqual({region["file"] for region in report["regions"]}, {name})
+            self.labels("boxes.nii", "-o", "again." + name, "--threads", "1", "--quiet")
+            self.assertEqual(self.files()["again." + name], self.files()[name])
+        triangles = [region["triangles"] for region in report["regions"]]
+        self.assertIn("body.glb: 3 regions of boxes.nii, GLB (glTF 2.0), RAS mm",
+                      self.labels("boxes.nii", "-o", "body.glb").stdout)
+
+        glb = self.files()["body.glb"]
+        length = struct.unpack_from("<I", glb, 12)[0]
+        scene, bin_chunk = json.loads(glb[20:20 + length]), glb[28 + length:]
+        self.assertEqual([node["name"] for node in scene["nodes"][1:]],
+                         ["A & B", "region 2", "Core"])
+        self.assertEqual(scene["materials"][2]["pbrMetallicRoughness"]["baseColorFactor"],
+                         [0, 0, 1, 1])
+        for mesh, due in zip(scene["meshes"], triangles):
+            accessor = scene["accessors"][mesh["primitives"][0]["indices"]]
+            self.assertEqual(accessor["count"], 3 * due)
+            view = scene["bufferViews"][accessor["bufferView"]]
+            self.assert_closed(struct.unpack_from(f"<{3 * due}I", bin_chunk, view["byteOffset"]))
+
+        with zipfile.ZipFile(self.path("body.3mf")) as archive:
+            model = archive.read("3D/3dmodel.model").decode()
+        self.assertEqual(re.findall('<object .* name="(.*?)"', model), ["A &amp; B", "region 2", "Core"])
+        self.assertEqual(re.findall('displaycolor="(.*?)"', model)[::2], ["#FF8000", "#0000FF"])
+        self.assertEqual(model.count("<triangle "), sum(triangles))
+
+    def test_one_file_refuses_what_needs_a_folder(self):
+        for option in (["--format", "stl"], ["--write-map"], ["--layers"],
+                       ["--file-names", "name"], ["--tetrahedra", "gmsh"]):
+            self.refused(USAGE, f"{option[0]}: is for a folder, and -o a.glb is one file of all "
+                         "regions; give -o a", "boxes.nii", "-o", "a.glb", *option)
+        self.refused(USAGE, "voxel: 3MF holds points in mm only", "boxes.nii", "-o", "a.3mf",
+                     "--coordinates", "voxel")
+        self.refused(USAGE, "give -o a --format stl", "boxes.nii", "-o", "a.stl")
+        self.labels("boxes.nii", "-o", "{name}.glb", "--quiet")
+        self.assertIn("boxes.glb", self.files())
 
     def test_frames(self):
         for frame in ("ras", "lps", "tkras", "voxel"):

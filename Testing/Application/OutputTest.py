@@ -11,7 +11,7 @@ import subprocess
 from support import BAD_INPUT, MESH, OK, ApplicationTest, ball, main, noise, onion, write_nifti
 
 FORMATS = (".vtp", ".vtk", ".ply", ".stl", ".obj", ".off", ".gii", ".surf", ".pial", ".white",
-           ".tri")
+           ".tri", ".glb", ".3mf")
 
 
 def stl_points(path):

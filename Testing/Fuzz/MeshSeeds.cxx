@@ -274,6 +274,56 @@ void addCounts(Seeds& seeds) {
                   std::string("\3\0\0\0abc", 7) + "</AppendedData></VTKFile><!-- x -->");
 }
 
+/// GLB and 3MF as other programs write them.
+void addScenes(Seeds& seeds) {
+    const auto glb = [](std::string json, const std::string& bin) {
+        json.resize((json.size() + 3) / 4 * 4, ' ');
+        std::string bytes = "glTF";
+        const auto word = [&](std::size_t number) {
+            appendLittleEndian(static_cast<std::uint32_t>(number), bytes);
+        };
+        word(2);
+        word(28 + json.size() + bin.size());
+        word(json.size());
+        bytes += "JSON" + json;
+        word(bin.size());
+        return bytes + std::string("BIN\0", 4) + bin;
+    };
+    std::string bin;
+    for (int n = 0; n < 16; ++n) appendLittleEndian(static_cast<float>(n * n % 7), bin);
+    bin += std::string("\0\1\2\2\1\3\0\0", 8);
+    for (const char* const primitive :
+         {R"("indices":1)", R"("mode":5,"material":0)", R"("mode":6)", R"("mode":1)"}) {
+        seeds.add("glb",
+                  glb(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+                      R"("extensionsRequired":["KHR_materials_unlit"],"nodes":[{"children":[1,2],)"
+                      R"("rotation":[0,0,0.7,0.7],"scale":[2,2,-2],"translation":[5,0,0]},)"
+                      R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,5,0,0,1]},{"mesh":0}],)"
+                      R"("materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0,1]}}],)"
+                      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"COLOR_0":2,)"
+                      R"("TEXCOORD_0":0},)" +
+                          std::string(primitive) +
+                          R"(}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":4,)"
+                          R"("type":"VEC3"},{"bufferView":1,"componentType":5121,"count":6,)"
+                          R"("type":"SCALAR"},{"bufferView":0,"componentType":5122,"count":4,)"
+                          R"("normalized":true,"byteOffset":4,"type":"VEC4"}],"bufferViews":[)"
+                          R"({"buffer":0,"byteLength":64,"byteStride":16},{"buffer":0,)"
+                          R"("byteOffset":64,"byteLength":8}],"buffers":[{"byteLength":72}]})",
+                      bin));
+    }
+    seeds.add("3mf",
+              "<model unit=\"inch\" xmlns:p=\"http://x/production/1\" requiredextensions=\"p\">"
+              "<metadata name=\"Description\">CoordinateFrame: LPS mm</metadata><resources>"
+              "<basematerials id=\"1\"><base name=\"a\" displaycolor=\"#FF0080FF\"/>"
+              "</basematerials><object id=\"2\" pid=\"1\" pindex=\"0\"><mesh><vertices>"
+              "<vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex "
+              "x=\"0\" y=\"1e0\" z=\"0\"/></vertices><triangles><triangle v1=\"0\" v2=\"1\" "
+              "v3=\"2\"/></triangles></mesh></object><object id=\"3\"><components><component "
+              "objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 10 0 0\"/><component objectid=\"2\" "
+              "p:path=\"/3D/3dmodel.model\"/></components></object></resources><build><item "
+              "objectid=\"3\"/></build></model>");
+}
+
 /// Polygons and strips in every format that holds them.
 void addPolygons(Seeds& seeds) {
     const std::string points = "0 0 0\n2 0 0\n2 2 1\n1 1 0\n0 2 0\n";
@@ -318,6 +368,7 @@ void addPolygons(Seeds& seeds) {
 
 void addMeshSeeds(Seeds& seeds) {
     addPolygons(seeds);
+    addScenes(seeds);
     addCounts(seeds);
     addOwnFiles(seeds);
     addGiftiWithMatrix(seeds);

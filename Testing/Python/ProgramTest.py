@@ -68,7 +68,8 @@ class Bytes(InFolder):
 
     def test_in_every_format_and_frame(self):
         mesh = adaptiso.surface(self.volume, 118, affine=OBLIQUE)
-        for extension in (".vtp", ".vtk", ".ply", ".stl", ".obj", ".off", ".gii", ".surf", ".tri"):
+        for extension in (".vtp", ".vtk", ".ply", ".stl", ".obj", ".off", ".gii", ".surf", ".tri",
+                          ".glb", ".3mf"):
             with self.subTest(extension):
                 if extension not in (".surf",):  # tkRAS of this sheared image can't be had
                     self.assertEqual(self.saved(mesh, extension), self.by_program(extension))

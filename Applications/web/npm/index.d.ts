@@ -76,7 +76,7 @@ export function check(surfaces: MeshInput | MeshInput[], options?: RunOptions): 
 /** adaptiso-compare: distances between two surfaces. */
 export function compare(a: MeshInput, b: MeshInput, options?: RunOptions): Promise<RunResult>;
 
-export interface LabelsOptions extends RunOptions { format?: "stl" | "ply" | "obj" | "vtp" }
+export interface LabelsOptions extends RunOptions { format?: "stl" | "ply" | "obj" | "vtp" | "glb" | "3mf" }
 /** adaptiso-labels: surfaces of all regions of a segmentation, as files. */
 export function labels(image: ImageInput, options?: LabelsOptions): Promise<RunResult>;
 

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,6 +23,13 @@ struct MeshRecord {
     const MeshWriteOptions& options;
 };
 
+/// One of several meshes of a file, in its frame.
+struct MeshPart {
+    std::string name;  ///< UTF-8 without control characters
+    std::optional<Color> color;
+    const TriangleMesh* mesh;
+};
+
 /// How a format is recognised, read and written: one at the end of each format's .cxx, all in the
 /// table of Formats.cxx.
 struct Codec {
@@ -33,6 +42,9 @@ struct Codec {
     /// Else any bytes may begin it, also those of a byte order mark; such formats are looked for
     /// first.
     bool isText = true;
+    /// Null in formats of one mesh. Arrays in `options` are of a single part.
+    void (*encodeParts)(std::span<const MeshPart> parts, const MeshWriteOptions& options,
+                        ByteSink& sink) = nullptr;
 };
 
 /// The first line that is neither empty nor a comment.

@@ -17,7 +17,7 @@ namespace meshio {
 
 // each at the end of its own .cxx
 extern const Codec kVtkXmlCodec, kVtkLegacyCodec, kPlyCodec, kStlCodec, kObjCodec, kOffCodec,
-    kGiftiCodec, kFreeSurferCodec, kOpenMeegCodec, kFiffCodec;
+    kGiftiCodec, kFreeSurferCodec, kOpenMeegCodec, kGlbCodec, k3mfCodec, kFiffCodec;
 
 }  // namespace meshio
 
@@ -35,6 +35,8 @@ constexpr Extensions kFreeSurfer = {".surf",    ".pial",  ".white",    ".inflate
                                     ".sphere",  ".reg",   ".smoothwm", ".midthickness", ".graymid",
                                     ".qsphere", ".nofix", ".seghead"};
 constexpr Extensions kOpenMeeg = {".tri"};
+constexpr Extensions kGlb = {".glb"};
+constexpr Extensions k3mf = {".3mf"};
 constexpr Extensions kFiff = {".fif"};
 
 constexpr std::int64_t kInt32 = std::numeric_limits<std::int32_t>::max();
@@ -58,6 +60,8 @@ constexpr MeshFormat kFormats[] = {
     {"GIFTI",            kGifti,      &meshio::kGiftiCodec,      F32,  Ras,   no,     yes,  yes,  yes,     no,     no,    no,   yes,      kInt32},
     {"FreeSurfer",       kFreeSurfer, &meshio::kFreeSurferCodec, F32,  TkRas, no,     yes,  no,   yes,     no,     no,    no,   yes,      kInt32},
     {"OpenMEEG",         kOpenMeeg,   &meshio::kOpenMeegCodec,   Text, Ras,   yes,    no,   yes,  no,      no,     no,    no,   yes,      kInt32},
+    {"GLB (glTF 2.0)",   kGlb,        &meshio::kGlbCodec,        F32,  Ras,   yes,    yes,  no,   no,      no,     yes,   no,   yes,      kInt32},
+    {"3MF",              k3mf,        &meshio::k3mfCodec,        Text, Ras,   no,     yes,  no,   no,      no,     no,    no,   yes,      kInt32},
     // read alone
     {"FIFF (MNE)",       kFiff,       &meshio::kFiffCodec,       F32,  TkRas, no,     yes,  no,   no,      no,     no,    no,   yes,      kInt32},
 };
@@ -107,7 +111,6 @@ constexpr std::string_view kCad = "mesh it and save it as STL, e.g. with FreeCAD
 constexpr std::string_view kImage = "adaptiso-mesh makes surfaces of images";
 
 constexpr Other kOthers[] = {
-    {"glTF"sv, "is a glTF scene", kMeshLab},
     {"Kaydara FBX"sv, "is an FBX scene", kMeshLab},
     {"BLENDER"sv, "is a Blender scene", kMeshLab},
     {"DRACO"sv, "is a mesh packed with Draco", kMeshLab},

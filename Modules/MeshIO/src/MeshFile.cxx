@@ -13,6 +13,7 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextLines.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/Scene.h"
 #include "adaptiso/MeshIO/Xml.h"
 
 namespace adaptiso {
@@ -237,6 +238,22 @@ void writeMesh(const TriangleMesh& mesh, const std::filesystem::path& path,
     requireWritable(moved, format, options, path.string());
 
     writeBytes(path, [&](ByteSink& sink) { format.codec->encode({moved, options}, sink); });
+}
+
+bool holdsScene(const MeshFormat& format) {
+    return format.codec->encodeParts != nullptr;
+}
+
+void writeScene(std::vector<ScenePart> parts, const std::filesystem::path& path,
+                const MeshWriteOptions& options) {
+    const MeshFormat& format = findMeshFormat(path);
+    std::vector<meshio::MeshPart> encoded;
+    for (ScenePart& part : parts) {
+        requireWritable(part.mesh, format, options, path.string());
+        part.mesh = movedTo(options, part.mesh, path.string());
+        encoded.push_back({meshio::storedName(toUtf8(part.name)), part.color, &part.mesh});
+    }
+    writeBytes(path, [&](ByteSink& sink) { format.codec->encodeParts(encoded, options, sink); });
 }
 
 MeshFile decodeMesh(std::string_view bytes, const MeshFormat& format, std::string_view name,

@@ -287,8 +287,11 @@ private:
 
     void judgePieces() {
         const std::int64_t components = std::ssize(facts_.topology.components);
-        addUnless(kOneComponent, components != 1,
-                  counted(components, "component") + largestComponents());
+        std::string pieces = counted(components, "component") + largestComponents();
+        if (rules_.profile == Profile::Print) {
+            pieces += "; each is printed: adaptiso-mesh --largest --fill-cavities leaves one";
+        }
+        addUnless(kOneComponent, components != 1, pieces);
 
         const auto genus = facts_.topology.genus();
         if (!genus) {

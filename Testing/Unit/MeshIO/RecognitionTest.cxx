@@ -120,7 +120,6 @@ TEST(Recognition, NamesSurfacesOfOtherFormats) {
         {"P 0.3 0.3 0.4 10 1 3\n0 0 0\n1 0 0\n0 1 0\n", "a surface of MNI (BIC .obj"},
         {"\xFF\xFF\xFF\0\0\0\1\0\0\0\2\0\0\0\1\0\0\0\0"s, "values at points (curv), no surface"},
         {"#!ascii version of lh.pial\n3 1\n", "FreeSurfer's text (.asc)"},
-        {"glTF\2\0\0\0"s, "is a glTF scene"},
         {"binarDCBA\7\0\0\0"s, "is a BrainVISA mesh"},
         {"$MeshFormat\n2.2 0 8\n", "is a gmsh mesh"},
         {"<?xml version=\"1.0\"?>\n<COLLADA>", "an XML scene of another format"},

@@ -5,6 +5,7 @@
 #include "MeshIOTestSupport.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/Scene.h"
 
 namespace adaptiso {
 namespace {
@@ -18,6 +19,10 @@ void writeAll(const std::filesystem::path& folder) {
         writeMesh(kSphere, folder / name);
     }
     const CoordinateFrame lps = CoordinateFrame::Lps, tkRas = CoordinateFrame::TkRas;
+    for (const char* name : {"ras.glb", "ras.3mf", "lps.glb"}) {
+        writeScene({{"ball", Color{255, 0, 0}, kSphere}, {"cell", {}, testing::tetrahedron()}},
+                   folder / name, {name[0] == 'l' ? lps : CoordinateFrame::Ras, std::nullopt, ""});
+    }
     writeMesh(kSphere, folder / "lps.gii", {lps, std::nullopt, ""});
     writeMesh(kSphere, folder / "lps.surf", {lps, std::nullopt, ""});
     writeMesh(kSphere, folder / "voxel.gii",

@@ -7,13 +7,15 @@ import sys
 import tempfile
 import unittest
 import warnings
+import xml.etree.ElementTree
+import zipfile
 from pathlib import Path
 
 try:
     import nibabel
     import numpy as np
     from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOGeometry import vtkOBJReader, vtkSTLReader
+    from vtkmodules.vtkIOGeometry import vtkGLTFReader, vtkOBJReader, vtkSTLReader
     from vtkmodules.vtkIOLegacy import vtkPolyDataReader
     from vtkmodules.vtkIOPLY import vtkPLYReader
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
@@ -136,6 +138,34 @@ class ClientTest(unittest.TestCase):
                 normals = vtk_to_numpy(data.GetPointData().GetNormals())
                 radial = (points - CENTRE_RAS) / RADIUS
                 self.assertLess(np.abs(normals - radial).max(), TOLERANCE)
+
+    def test_vtk_places_glb_upright_in_metres(self):
+        for name in ("ras.glb", "lps.glb"):
+            with self.subTest(name):
+                reader = vtkGLTFReader()
+                reader.SetFileName(str(self.folder / name))
+                reader.Update()
+                parts = reader.GetOutput().NewIterator()
+                data = parts.GetCurrentDataObject()
+                x, y, z = 1000 * vtk_to_numpy(data.GetPoints().GetData()).astype(float).T
+                triangles = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+                self.assert_sphere(np.column_stack((-x, z, y)), triangles)  # Y up, Z to the front
+                parts.GoToNextItem()
+                self.assertEqual(parts.GetCurrentDataObject().GetNumberOfPolys(), 4)
+
+    def test_3mf_is_a_zip_of_xml(self):
+        archive = zipfile.ZipFile(self.folder / "ras.3mf")
+        self.assertIsNone(archive.testzip())
+        model = xml.etree.ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+        core = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+        self.assertEqual(model.get("unit"), "millimeter")
+        ball, cell = model.iter(core + "object")
+        self.assertEqual((ball.get("name"), cell.get("name")), ("ball", "cell"))
+        self.assertEqual(model.find(f".//{core}base").get("displaycolor"), "#FF0000")
+        self.assertEqual([item.get("objectid") for item in model.iter(core + "item")], ["2", "3"])
+        self.assert_sphere(
+            np.array([[float(v.get(axis)) for axis in "xyz"] for v in ball.iter(core + "vertex")]),
+            np.array([[int(t.get(v)) for v in ("v1", "v2", "v3")] for t in ball.iter(core + "triangle")]))
 
     def test_vtk_finds_the_frame_in_field_data(self):
         for name, make_reader in (("ras.vtp", vtkXMLPolyDataReader), ("ras.vtk", vtkPolyDataReader)):

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/MeshIO/MeshFile.h"
+
+namespace adaptiso {
+
+/// One of several surfaces of a file.
+struct ScenePart {
+    std::string name;  ///< UTF-8
+    std::optional<Color> color;
+    TriangleMesh mesh;  ///< LPS mm
+};
+
+/// Whether a format holds several surfaces with their names and colours: GLB and 3MF.
+bool holdsScene(const MeshFormat& format);
+
+/// Writes surfaces into one file: a node each in GLB, an object each in 3MF. readMesh() reads them
+/// as one surface.
+/// \param options  as writeMesh() takes them, without arrays
+/// \throws InvalidInput, FileError  as writeMesh() \pre holdsScene() of the name's format
+void writeScene(std::vector<ScenePart> parts, const std::filesystem::path& path,
+                const MeshWriteOptions& options = {});
+
+}  // namespace adaptiso

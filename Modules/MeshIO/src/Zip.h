@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "adaptiso/Core/Bytes.h"
+
+namespace adaptiso::meshio {
+
+/// Writes files into a zip archive, deflated, without dates.
+/// \throws InvalidInput  they take more than 4 GB
+void writeZip(const std::vector<std::pair<std::string, std::string>>& files, ByteSink& sink);
+
+/// The files of a zip archive, stored or deflated. Names are found whatever their case.
+class ZipFiles {
+public:
+    /// \throws FileError  it is cut off, or two archives are joined
+    explicit ZipFiles(std::string_view bytes);
+
+    bool has(const std::string& name) const;
+    /// The bytes of a file. \throws FileError  it is not there, is encrypted, or damaged
+    std::string read(const std::string& name);
+    /// What follows the archive.
+    std::string_view behind() const { return behind_; }
+
+private:
+    struct Entry {
+        std::uint16_t flags = 0, method = 0;
+        std::uint32_t checksum = 0;
+        std::uint64_t packedBytes = 0, bytes = 0, at = 0;
+    };
+
+    std::string_view bytes_, behind_;
+    std::map<std::string, Entry> entries_;
+    std::uint64_t unpacked_ = 0;
+};
+
+}  // namespace adaptiso::meshio
