@@ -3,12 +3,11 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <array>
-#include <ctime>
 #include <fstream>
 #include <string_view>
 
 #include "Common/CommonOptions.h"
+#include "Common/Log.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/Verdict.h"
@@ -323,12 +322,7 @@ void writeRecord(const fs::path& file, const RunRecord& record) {
 }
 
 std::string recordDate() {
-    const std::time_t now = std::time(nullptr);
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    std::array<char, 32> text{};
-    const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return {text.data(), length};
+    return utcDate();
 }
 
 void writeWhole(const fs::path& file, const std::string& text, const fs::path& ownFolder) {

@@ -1,6 +1,6 @@
 #include "Common/Log.h"
 
-#include <chrono>
+#include <array>
 #include <ctime>
 #include <fstream>
 #include <string>
@@ -23,16 +23,6 @@ OpenLog& openedLog() {
     return log;
 }
 
-/// "2026-11-28T22:16:01Z"
-std::string logDate() {
-    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    std::tm parts{};
-    gmtime_r(&now, &parts);
-    char text[sizeof "0000-00-00T00:00:00Z"];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-    return text;
-}
-
 /// Anything but an empty file or a log is someone's data.
 bool mayBeLog(const std::filesystem::path& file) {
     std::error_code error;
@@ -41,10 +31,19 @@ bool mayBeLog(const std::filesystem::path& file) {
     std::string date;
     std::ifstream(file) >> date;
     return date.empty() ||
-           (date.size() == logDate().size() && date[10] == 'T' && date.back() == 'Z');
+           (date.size() == utcDate().size() && date[10] == 'T' && date.back() == 'Z');
 }
 
 }  // namespace
+
+std::string utcDate() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    std::array<char, 32> text{};
+    const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return {text.data(), length};
+}
 
 void openLog(const std::filesystem::path& file) {
     if (!mayBeLog(file)) {
@@ -62,7 +61,7 @@ bool isLogOpen() {
 
 void addToLog(std::string_view text) {
     if (!isLogOpen()) return;
-    openedLog().file << logDate() << ' ' << formatFixed(openedLog().sinceOpened.total(), 1)
+    openedLog().file << utcDate() << ' ' << formatFixed(openedLog().sinceOpened.total(), 1)
                      << " s  " << oneLine(text) << std::endl;
 }
 

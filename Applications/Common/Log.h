@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace adaptiso {
@@ -9,6 +10,9 @@ namespace adaptiso {
 void openLog(const std::filesystem::path& file);
 
 bool isLogOpen();
+
+/// The present time, "2026-11-28T22:16:01Z".
+std::string utcDate();
 
 /// Adds a line with date and seconds since openLog() to the file of --log, if there is one.
 void addToLog(std::string_view text);
