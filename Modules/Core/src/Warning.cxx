@@ -71,7 +71,7 @@ constexpr WarningCode kCodes[] = {
     {"resample-filled", "resampling filled what lies around the image with its smallest value"},
     {"scaling-ignored", "the header's scaling is incomplete; the stored values were taken"},
     {"series-left-aside", "images of other series in the folder were left aside"},
-    {"several-solids", "a file holds several solids or meshes; they were read as one surface", true},
+    {"several-solids", "a file holds several solids or meshes, read as one surface", true},
     {"sides-doubtful", "names of electrodes, or nasion and ears, contradict the sides of the head"},
     {"skull-closed", "a hole in the segmentation's skull is closed in the head model"},
     {"skull-thickened", "much of the head model's skull is thicker than the segmentation's"},
