@@ -10,7 +10,9 @@
 
 #include "Common/Batch.h"
 #include "Common/BatchSummary.h"
+#include "Common/Log.h"
 #include "Common/Naming.h"
+#include "Common/ProgramRun.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/UsageWords.h"
@@ -251,11 +253,18 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
         running.summary = running.folder / "summary.html";
         running.summaryFolder = running.folder;
     }
-    for (const fs::path& file : {running.summary, batch.table, fs::path(common.json)}) {
+    if (batch.table == "-") throw UsageError("--csv -: give a file");
+    OutputPlan outputs({});
+    for (const auto& [option, file] : {std::pair("--summary", running.summary),
+                                       {"--csv", batch.table},
+                                       {"--json", fs::path(common.json)},
+                                       {"--log", logFile()}}) {
         if (file.empty() || file == "-") continue;
+        outputs.add(option, file);
+        if (!batch.list.empty() && batch.list != "-") checkNotInput(file, batch.list);
         checkOutput(file, file == running.summary ? running.summaryFolder : fs::path());
         for (const PlannedRun& run : runs) {
-            for (const fs::path& input : run.item.inputs) checkNotInput(file, input);
+            for (const fs::path& input : run.inputs) checkNotInput(file, input);
         }
     }
     std::string lines;

@@ -143,6 +143,9 @@ private:
             if (fault(n).empty()) continue;
             finish(n, {.exitCode = kExitBadInput, .errors = fault(n)});
         }
+        waiting_ -= finished_;
+        finished_ = 0;
+        start_ = Clock::now();
         runChildren(
             waiting.size(), batch_.jobs.value_or(1),
             [&](std::size_t n) { return start(waiting[n]); },
@@ -213,6 +216,7 @@ private:
         const PlannedRun& run = runs_[n];
         if (ended_[n]) return {};
         if (takeEarlier(n)) {
+            --waiting_;
             printNext();
             return {};
         }
@@ -340,24 +344,24 @@ private:
     void print(const BatchItem& item, const RunRecord& record) const {
         const std::string name = item.inputs.front().string();
         printWarnings(program_.name, common_, record.warnings);
-        const std::string line = jsonText(lineJson(record), -1) + "\n";
-        if (common_.wantsJsonOnStdout()) std::cout << line << std::flush;
-        if (running_.jsonLines != nullptr) *running_.jsonLines += line;
-        if (common_.isQuiet || common_.wantsJsonOnStdout()) {
-            if (!record.hasPassed()) {
-                printError(program_.name, "failed: " + name + ": " + says(record));
-            }
-            return;
-        }
+        const std::string json = jsonText(lineJson(record), -1) + "\n";
+        if (common_.wantsJsonOnStdout()) std::cout << json << std::flush;
+        if (running_.jsonLines != nullptr) *running_.jsonLines += json;
         const char* const state = !record.hasPassed()     ? "FAILED"
                                   : record.isOfEarlierRun ? "before"
                                                           : "done  ";
         const std::string again =
             record.madeAgain.empty() ? "" : "; made again: " + record.madeAgain;
-        const std::string text = oneLine(std::string(state) + "  " + name + ": " + says(record) +
-                                         ", " + formatFixed(record.seconds, 2) + " s" + again);
-        addToLog(text);
-        std::cout << text << std::endl;
+        const auto line = [&](const std::string& of) {
+            return oneLine(std::string(state) + "  " + of + ": " + says(record) + ", " +
+                           formatFixed(record.seconds, 2) + " s" + again);
+        };
+        addToLog(line(joined(record.files)));
+        if (!common_.isQuiet && !common_.wantsJsonOnStdout()) {
+            std::cout << line(name) << std::endl;
+        } else if (!record.hasPassed()) {
+            printError(program_.name, "failed: " + name + ": " + says(record));
+        }
     }
 
     /// The page as of now, on which runs that have not ended are not finished.
@@ -389,7 +393,7 @@ private:
     Clock::time_point pageWritten_{};
     ProgressLine progress_;
     std::size_t printed_ = 0;
-    const Clock::time_point start_ = Clock::now();
+    Clock::time_point start_{};               ///< of the first run
     std::size_t waiting_ = 0, finished_ = 0;  ///< runs to make, and those that have ended
 };
 

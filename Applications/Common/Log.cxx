@@ -3,6 +3,7 @@
 #include <array>
 #include <ctime>
 #include <fstream>
+#include <iomanip>
 #include <string>
 
 #include "Common/RunApp.h"
@@ -14,6 +15,7 @@ namespace adaptiso {
 namespace {
 
 struct OpenLog {
+    std::filesystem::path name;
     std::ofstream file;
     StageTimer sinceOpened;
 };
@@ -29,7 +31,10 @@ bool mayBeLog(const std::filesystem::path& file) {
     if (!std::filesystem::exists(file, error)) return true;
     if (!std::filesystem::is_regular_file(file, error)) return false;
     std::string date;
-    std::ifstream(file) >> date;
+    std::ifstream stream(file);
+    if (!stream) return false;
+    constexpr int kLongest = 64;
+    stream >> std::setw(kLongest) >> date;
     return date.empty() ||
            (date.size() == utcDate().size() && date[10] == 'T' && date.back() == 'Z');
 }
@@ -50,9 +55,14 @@ void openLog(const std::filesystem::path& file) {
         throw FileError("--log " + file.string() + ": exists and is no log; name a new file");
     }
     openedLog().file.open(file, std::ios::app);
+    openedLog().name = file;
     if (!openedLog().file) {
         throw FileError("--log " + file.string() + ": can't be written: " + detail::reason());
     }
+}
+
+std::filesystem::path logFile() {
+    return openedLog().name;
 }
 
 bool isLogOpen() {

@@ -9,6 +9,9 @@ namespace adaptiso {
 /// Opens the file of --log, a new one or an earlier log. \throws FileError
 void openLog(const std::filesystem::path& file);
 
+/// The file of --log; empty: none.
+std::filesystem::path logFile();
+
 bool isLogOpen();
 
 /// The present time, "2026-11-28T22:16:01Z".

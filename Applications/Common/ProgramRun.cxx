@@ -5,6 +5,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "Common/Log.h"
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
@@ -52,6 +53,7 @@ void OutputPlan::checkFolder(const fs::path& folder) const {
 
 void OutputPlan::check(const CommonOptions& common, const ReportOptions& report) {
     if (hasJsonFile(common)) add("--json", common.json);
+    if (isLogOpen()) add("--log", logFile());
     if (!report.page.empty()) add("--report", report.page);
     checkReportOutputs(report, inputs_);
     for (const fs::path& output : outputs_) {

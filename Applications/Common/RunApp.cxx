@@ -88,7 +88,7 @@ std::string oneLine(std::string_view text) {
 
 void printError(std::string_view programName, std::string_view message) {
     std::cerr << programName << ": " << oneLine(message) << '\n';
-    addToLog(message);
+    addToLog(withoutFolders(std::string(message)));
 }
 
 }  // namespace adaptiso
@@ -213,7 +213,8 @@ std::string helpOn(const CLI::App& app, const std::string& word) {
         for (const char* const dashes : {",", ",-", ",--"}) {
             if (names.find(dashes + name + ",") != std::string::npos) exact += text;
         }
-        if (lowerCase(names + option->get_description()).find(name) != std::string::npos) {
+        if (name.size() > 1 &&
+            lowerCase(names + option->get_description()).find(name) != std::string::npos) {
             holding += text;
         }
         for (const std::string& own : option->get_lnames()) known.push_back(own);
@@ -224,7 +225,7 @@ std::string helpOn(const CLI::App& app, const std::string& word) {
         throw UsageError("--help " + shown(word) + ": no option is named so" +
                          suggestion(name, known));
     }
-    return (answer ? word + ": " + *answer + "\n" : "") + holding;
+    return answer ? word + ": " + *answer + "\n" : holding;
 }
 
 /// Tells why a run has failed, on stderr and to whom --json was asked for.

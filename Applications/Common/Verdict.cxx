@@ -64,10 +64,9 @@ bool leaveOutFolders(std::string& text, const std::string& path) {
     return isThere;
 }
 
-/// {text, file}: without folders.
-Json errorJson(const Verdict& verdict) {
-    if (verdict.error.empty()) return nullptr;
-    std::string text = oneLine(verdict.error), file;
+}  // namespace
+
+std::string withoutFolders(std::string text, std::string* file) {
     std::vector<std::string> words = commandLine().words;
     // a folder after what lies in it
     std::ranges::stable_sort(words, std::ranges::greater{}, &std::string::size);
@@ -75,8 +74,19 @@ Json errorJson(const Verdict& verdict) {
         std::error_code error;
         const bool isFile = word.find_first_of("./") != std::string::npos ||
                             fs::symlink_status(word, error).type() > fs::file_type::not_found;
-        if (isFile && leaveOutFolders(text, word) && file.empty()) file = baseName(word);
+        const bool isThere = isFile && leaveOutFolders(text, word);
+        if (isThere && file != nullptr && file->empty()) *file = baseName(word);
     }
+    return text;
+}
+
+namespace {
+
+/// {text, file}: without folders.
+Json errorJson(const Verdict& verdict) {
+    if (verdict.error.empty()) return nullptr;
+    std::string file;
+    const std::string text = withoutFolders(oneLine(verdict.error), &file);
     Json json{{"text", text}};
     if (!file.empty()) json["file"] = file;
     return json;

@@ -78,4 +78,8 @@ void checkReportFile(const CommonOptions& common, const std::filesystem::path& i
 void deliverReport(const CommonOptions& common, const std::filesystem::path& input,
                    const std::string& json, const std::function<void(std::ostream&)>& printText);
 
+/// `text` with the files of the command line by their names, as records and logs have them.
+/// \param file  becomes the first of them; may be null
+std::string withoutFolders(std::string text, std::string* file = nullptr);
+
 }  // namespace adaptiso

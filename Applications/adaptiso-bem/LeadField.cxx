@@ -67,13 +67,17 @@ open("lead-field-fwd.fif", "wb").write(b"".join(tags))
 print(mne.__version__)
 )";
 
-/// A Python with MNE: the user's own, or Debian's. \return  its name; empty: there is none
+/// A Python with MNE: the user's own, or Debian's. Python imports from the current folder first:
+/// it is an empty one. \return  its name; empty: there is none
 std::string pythonWithMne() {
+    const ScratchFolder folder;
     for (const char* const python : {"python3", "/usr/bin/python3"}) {
         // by env, so that Python sees its own name and finds its modules by it
-        const bool isGood = runChild("env", {python, "-c",
-                                             "import importlib.util as u, sys; "
-                                             "sys.exit(u.find_spec('mne') is None)"})
+        const bool isGood = runChild("env",
+                                     {python, "-c",
+                                      "import importlib.util as u, sys; "
+                                      "sys.exit(u.find_spec('mne') is None)"},
+                                     folder.path())
                                 .isGood();
         if (isGood) return python;
     }
@@ -98,13 +102,18 @@ std::vector<Command> commandsFor(const BemModel& model, const BemFileOptions& fi
     return {python};
 }
 
-/// A file of its own for all that was printed.
-fs::path writeLog(const std::string& text) {
+/// "; what it printed is in FILE", a new file; empty where none can be written.
+std::string printedIn(const std::string& text) {
     std::string path = (temporaryFolder() / "adaptiso-lead-field-XXXXXX.log").string();
     const int file = mkstemps(path.data(), 4);
-    if (file >= 0) close(file);
-    std::ofstream(path) << text;
-    return path;
+    if (file < 0) return "";
+    close(file);
+    std::ofstream stream(path);
+    stream << text;
+    stream.close();
+    if (stream) return "; what it printed is in " + path;
+    unlink(path.c_str());
+    return "";
 }
 
 std::string bytesIn(const fs::path& path) {
@@ -165,10 +174,6 @@ void requireSolver(const BemModelOptions& options) {
 
 void solveLeadField(BemRun& run) {
     BemModel& model = run.model;
-    if (model.electrodes->points.empty()) {
-        throw InvalidInput("--lead-field: " + run.options.electrodes.string() +
-                           " holds landmarks alone, no electrode");
-    }
     BemFileOptions files;
     files.unit = OpenMeegUnit::Metres;  // of potentials in volts
     files.frame = run.options.files.frame;
@@ -185,8 +190,7 @@ void solveLeadField(BemRun& run) {
     std::string printed, log;
     const auto fail = [&](const std::string& program, const std::string& reason) {
         throw FileError("--lead-field " + model.options.leadField + ": " + program +
-                        " made no lead field (" + reason + "); what it printed is in " +
-                        writeLog(log).string());
+                        " made no lead field (" + reason + ")" + printedIn(log));
     };
     for (Command& command : commandsFor(model, files)) {
         const std::string program = command.front();
@@ -209,6 +213,7 @@ void solveLeadField(BemRun& run) {
     const bool isWhole = std::ssize(made.gain) == std::ssize(model.electrodes->points) * dipoles &&
                          std::all_of(made.gain.begin(), made.gain.end(),
                                      [](double value) { return std::isfinite(value); });
+    if (isMne(model.options) && made.forward.empty()) fail(made.solver, "it wrote no .fif file");
     if (!isWhole) fail(made.solver, "it wrote too few numbers, or not finite ones");
     model.notes.push_back("lead field: " + formatCount(std::ssize(model.electrodes->points)) +
                           " electrodes by " + formatCount(dipoles) +

@@ -282,6 +282,12 @@ int runBem(const BemOptions& options) {
     requireMesher(options.tetrahedra);
     requireSolver(options.model);
     readElectrodes(run);
+    const auto& cap = run.model.givenElectrodes.file;
+    const auto isElectrode = [](const NamedPoint& p) { return p.kind == PointKind::Electrode; };
+    if (!options.model.leadField.empty() && cap && std::ranges::none_of(cap->points, isElectrode)) {
+        throw InvalidInput("--lead-field: " + options.electrodes.string() +
+                           " holds landmarks alone, no electrode");
+    }
 
     const BemHooks hooks{
         [&](std::string_view stage, const std::function<void()>& work) { run.stage(stage, work); },

@@ -14,6 +14,7 @@
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Pipeline.h"
+#include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
@@ -224,8 +225,9 @@ void declareOutput(CLI::App& app, BemOptions& options) {
         "-s,--subject", "NAME", options.subject,
         "A subject of FreeSurfer: the .surf files are put into its folder bem as well. Without an "
         "image --t1 is its mri/T1.mgz, --brain-mask its mri/brainmask.mgz (--aseg its mri/aseg.mgz "
-        "without that, or with --layers 4), --pial its surf/?h.pial and, for --lead-field, "
-        "--sources its surf/?h.white; -o is SUBJECT/adaptiso-bem by default");
+        "without that, or with --layers 4) and, without --input-coordinates, --pial its "
+        "surf/?h.pial and, "
+        "for --lead-field, --sources its surf/?h.white; -o is SUBJECT/adaptiso-bem by default");
     output.choice<OpenMeegUnit>(
         "--units", options.files.unit,
         {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}},
@@ -335,12 +337,14 @@ void takeSubject(BemOptions& options) {
         return;
     }
     options.t1 = folder / "mri" / "T1.mgz";
+    requireIn(options.t1, folder);
     using Paths = std::vector<std::filesystem::path>;
     const auto take = [&](auto& option, const Paths& files) {
         std::error_code error;
         for (const auto& file : files) {
             if (!option.empty() || !std::filesystem::exists(folder / file, error)) return;
         }
+        for (const auto& file : files) requireIn(folder / file, folder);
         if constexpr (std::is_same_v<decltype(option), Paths&>) {
             for (const auto& file : files) option.push_back(folder / file);
         } else {
@@ -351,6 +355,7 @@ void takeSubject(BemOptions& options) {
     if (options.brainMask.empty() || options.model.boundaries.withBrain) {
         take(options.aseg, {"mri/aseg.mgz"});
     }
+    if (!options.inputCoordinates.empty()) return;  // which are those of files that the user names
     take(options.pial, {"surf/lh.pial", "surf/rh.pial"});
     if (!options.model.leadField.empty() && !options.model.sources.gridMm) {
         take(options.sources, {"surf/lh.white", "surf/rh.white"});

@@ -81,6 +81,7 @@ constexpr WarningCode kCodes[] = {
     {"stray-bits", "bits that are no part of the samples were left out"},
     {"subject-not-listed", "participants.tsv does not list a participant of the dataset"},
     {"subject-not-there", "participants.tsv lists a participant without a folder"},
+    {"supports-left-out", "a 3MF's supports, and objects that are no solid, were left out", true},
     {"surface-moved", "a head model's surface does not lie where it was given"},
     {"surface-unsound", "the surface has faults (holes aside)"},
     {"t2-weighted", "CSF is brighter than brain in an image given as a T1"},

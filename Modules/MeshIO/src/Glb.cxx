@@ -26,7 +26,8 @@
 namespace adaptiso::meshio {
 namespace {
 
-using GltfJson = nlohmann::ordered_json;
+using GltfJson = nlohmann::ordered_json;  // of what is written, in a fixed order
+using ReadJson = nlohmann::json;          // an ordered one searches all its keys for each
 
 constexpr std::string_view kGltfMagic = "glTF";
 constexpr std::size_t kGltfHeaderBytes = 12, kChunkHeaderBytes = 8;
@@ -128,16 +129,14 @@ private:
     /// \return the accessor's number
     std::size_t array(std::int64_t count, std::int64_t each, const char* type, int component,
                       int target) {
-        GltfJson& views = json_["bufferViews"];
-        views.push_back({{"buffer", 0},
-                         {"byteOffset", bytes_},
-                         {"byteLength", count * each},
-                         {"target", target}});
+        const std::size_t view = json_["bufferViews"].size();
+        json_["bufferViews"].push_back({{"buffer", 0},
+                                        {"byteOffset", bytes_},
+                                        {"byteLength", count * each},
+                                        {"target", target}});
         bytes_ += count * each;
-        json_["accessors"].push_back({{"bufferView", views.size() - 1},
-                                      {"componentType", component},
-                                      {"count", count},
-                                      {"type", type}});
+        json_["accessors"].push_back(
+            {{"bufferView", view}, {"componentType", component}, {"count", count}, {"type", type}});
         return json_["accessors"].size() - 1;
     }
 
@@ -214,7 +213,7 @@ void encodeGlb(const MeshRecord& record, ByteSink& sink) {
 
 // ---- reading
 
-std::int64_t wholeOf(const GltfJson& value, const char* what) {
+std::int64_t wholeOf(const ReadJson& value, const char* what) {
     constexpr std::int64_t kMost = std::int64_t{1} << 40;  // no sum of some overflows
     const bool isWhole = value.is_number_integer() &&
                          (!value.is_number_unsigned() || value.get<std::uint64_t>() <= kMost);
@@ -223,16 +222,16 @@ std::int64_t wholeOf(const GltfJson& value, const char* what) {
     return number;
 }
 
-std::int64_t wholeAt(const GltfJson& object, const char* key, std::int64_t otherwise) {
+std::int64_t wholeAt(const ReadJson& object, const char* key, std::int64_t otherwise) {
     return object.contains(key) ? wholeOf(object.at(key), key) : otherwise;
 }
 
-double realAt(const GltfJson& list, std::size_t index) {
+double realAt(const ReadJson& list, std::size_t index) {
     return list.at(index).get<double>();
 }
 
 /// The element that `key` of `object` numbers; nullptr where it has none.
-const GltfJson* referred(const GltfJson& file, const char* list, const GltfJson& object,
+const ReadJson* referred(const ReadJson& file, const char* list, const ReadJson& object,
                          const char* key) {
     if (!object.contains(key)) return nullptr;
     return &file.at(list).at(static_cast<std::size_t>(wholeAt(object, key, 0)));
@@ -290,10 +289,10 @@ struct GltfArray {
     }
 };
 
-AffineTransform nodeTransform(const GltfJson& node) {
+AffineTransform nodeTransform(const ReadJson& node) {
     AffineTransform transform;
     if (node.contains("matrix")) {
-        const GltfJson& m = node.at("matrix");
+        const ReadJson& m = node.at("matrix");
         for (int c = 0; c < 3; ++c) {
             for (int row = 0; row < 3; ++row) {
                 transform.linear.column[static_cast<std::size_t>(c)][row] =
@@ -304,7 +303,7 @@ AffineTransform nodeTransform(const GltfJson& node) {
         return transform;
     }
     if (node.contains("rotation")) {
-        const GltfJson& q = node.at("rotation");
+        const ReadJson& q = node.at("rotation");
         const double x = realAt(q, 0), y = realAt(q, 1), z = realAt(q, 2), w = realAt(q, 3);
         const double s = 2 / (x * x + y * y + z * z + w * w);
         transform.linear = {
@@ -327,7 +326,7 @@ AffineTransform nodeTransform(const GltfJson& node) {
 /// A file's meshes as its scene places them.
 class GltfReader {
 public:
-    GltfReader(const GltfJson& file, std::string_view bin, std::size_t fileBytes,
+    GltfReader(const ReadJson& file, std::string_view bin, std::size_t fileBytes,
                const MeshReadOptions& options)
         : file_(file), bin_(bin), options_(options), unpacking_(fileBytes) {
         const std::string generator = file.at("asset").value("generator", "");
@@ -368,7 +367,7 @@ private:
             unsupported("it is glTF " + printable(version), "save it as glTF 2.0");
         }
         if (!file_.contains("extensionsRequired")) return;
-        for (const GltfJson& each : file_.at("extensionsRequired")) {
+        for (const ReadJson& each : file_.at("extensionsRequired")) {
             const std::string name = each.get<std::string>();
             const bool isLook = name.starts_with("KHR_materials") ||
                                 name.starts_with("KHR_texture") ||
@@ -383,15 +382,15 @@ private:
     /// Depth first, in the order of the file.
     void visitScene() {
         if (!file_.contains("nodes")) malformed("its scene has no node");
-        const GltfJson& nodes = file_.at("nodes");
+        const ReadJson& nodes = file_.at("nodes");
         std::vector<std::pair<std::size_t, AffineTransform>> open;
-        const auto push = [&](const GltfJson& numbers, const AffineTransform& from) {
+        const auto push = [&](const ReadJson& numbers, const AffineTransform& from) {
             for (std::size_t n = numbers.size(); n-- > 0;) {
                 open.emplace_back(static_cast<std::size_t>(wholeOf(numbers.at(n), "node")), from);
             }
         };
         if (file_.contains("scenes")) {
-            const GltfJson& scene =
+            const ReadJson& scene =
                 file_.at("scenes").at(static_cast<std::size_t>(wholeAt(file_, "scene", 0)));
             if (scene.contains("nodes")) push(scene.at("nodes"), {});
         } else {
@@ -405,34 +404,46 @@ private:
             const auto [number, from] = open.back();
             open.pop_back();
             if (!seen.insert(number).second) malformed("its scene has a node twice");
-            const GltfJson& node = nodes.at(number);
+            const ReadJson& node = nodes.at(number);
             const AffineTransform place = from * nodeTransform(node);
-            if (const GltfJson* const mesh = referred(file_, "meshes", node, "mesh")) {
+            if (const ReadJson* const mesh = referred(file_, "meshes", node, "mesh")) {
+                if (node.contains("skin")) {
+                    unsupported("a skeleton moves one of its meshes",
+                                "apply the armature, e.g. with Blender");
+                }
+                if (node.contains("weights") || mesh->contains("weights")) {
+                    unsupported("shape keys move one of its meshes",
+                                "apply them, e.g. with Blender");
+                }
                 addMesh(*mesh, toMm * place);
             }
             if (node.contains("children")) push(node.at("children"), place);
         }
     }
 
-    static GltfJson roots(const GltfJson& nodes) {
+    static ReadJson roots(const ReadJson& nodes) {
         std::set<std::int64_t> children;
-        for (const GltfJson& node : nodes) {
+        for (const ReadJson& node : nodes) {
             if (!node.contains("children")) continue;
-            for (const GltfJson& child : node.at("children")) {
+            for (const ReadJson& child : node.at("children")) {
                 children.insert(wholeOf(child, "node"));
             }
         }
-        GltfJson found = GltfJson::array();
+        ReadJson found = ReadJson::array();
         for (std::int64_t n = 0; n < std::ssize(nodes); ++n) {
             if (!children.contains(n)) found.push_back(n);
         }
         return found;
     }
 
-    void addMesh(const GltfJson& mesh, const AffineTransform& place) {
+    void addMesh(const ReadJson& mesh, const AffineTransform& place) {
         PlacedMesh placed;
         bool haveNormals = true, haveColors = true;
-        for (const GltfJson& primitive : mesh.at("primitives")) {
+        for (const ReadJson& primitive : mesh.at("primitives")) {
+            constexpr std::int64_t kEach = 256;  // of a file whose nodes have the same meshes
+            const std::int64_t own =
+                primitive.contains("attributes") ? std::ssize(primitive.at("attributes")) : 0;
+            unpacking_.add(kEach * (1 + own), 1);
             const std::int64_t mode = wholeAt(primitive, "mode", 4);
             constexpr std::int64_t kTriangles = 4, kStrip = 5, kFan = 6;
             if (mode != kTriangles && mode != kStrip && mode != kFan) {
@@ -449,11 +460,9 @@ private:
         joined_.add(std::move(placed), place);
     }
 
-    void addPrimitive(const GltfJson& primitive, std::int64_t mode, PlacedMesh& placed,
+    void addPrimitive(const ReadJson& primitive, std::int64_t mode, PlacedMesh& placed,
                       bool& haveNormals, bool& haveColors) {
-        constexpr std::int64_t kEach = 1024;  // of a file whose nodes have the same meshes
-        unpacking_.add(kEach, 1);
-        const GltfJson& attributes = primitive.at("attributes");
+        const ReadJson& attributes = primitive.at("attributes");
         if (!attributes.contains("POSITION")) malformed("a mesh has no POSITION");
         const std::int64_t before = std::ssize(placed.mesh.points);
         const GltfArray points = arrayAt(attributes, "POSITION", 3);
@@ -477,36 +486,43 @@ private:
         addCorners(primitive, mode, before, points.count, placed.mesh.triangles);
     }
 
-    void addColors(const GltfJson& primitive, std::int64_t count, PlacedMesh& placed,
+    void addColors(const ReadJson& primitive, std::int64_t count, PlacedMesh& placed,
                    bool& haveColors) {
         if (!options_.keepsPointArrays || !haveColors) return;
-        const GltfJson& attributes = primitive.at("attributes");
-        if (attributes.contains("COLOR_0")) {
-            const GltfArray colors = arrayAt(attributes, "COLOR_0", 3, count);
-            for (std::int64_t i = 0; i < count; ++i) {
-                const Vec3 linear = colors.triple(i);
-                placed.colors.push_back(
-                    {shadeOfLinear(linear.x), shadeOfLinear(linear.y), shadeOfLinear(linear.z)});
-            }
-            return;
-        }
-        const GltfJson* const material = referred(file_, "materials", primitive, "material");
-        const GltfJson none = GltfJson::object();
-        const GltfJson& look = material != nullptr && material->contains("pbrMetallicRoughness")
+        const ReadJson* const material = referred(file_, "materials", primitive, "material");
+        const ReadJson none = ReadJson::object();
+        const ReadJson& look = material != nullptr && material->contains("pbrMetallicRoughness")
                                    ? material->at("pbrMetallicRoughness")
                                    : none;
-        haveColors = look.contains("baseColorFactor");
+        const ReadJson& attributes = primitive.at("attributes");
+        haveColors = attributes.contains("COLOR_0") || look.contains("baseColorFactor");
         if (!haveColors) return;
-        const GltfJson& factor = look.at("baseColorFactor");
-        placed.colors.insert(placed.colors.end(), static_cast<std::size_t>(count),
-                             {shadeOfLinear(realAt(factor, 0)), shadeOfLinear(realAt(factor, 1)),
-                              shadeOfLinear(realAt(factor, 2))});
+        Vec3 factor{1, 1, 1};
+        if (look.contains("baseColorFactor")) {
+            const ReadJson& shades = look.at("baseColorFactor");
+            factor = {realAt(shades, 0), realAt(shades, 1), realAt(shades, 2)};
+        }
+        std::optional<GltfArray> own;
+        if (attributes.contains("COLOR_0")) own = arrayAt(attributes, "COLOR_0", 3, count);
+        for (std::int64_t i = 0; i < count; ++i) {
+            const Vec3 of = own ? own->triple(i) : Vec3{1, 1, 1};
+            placed.colors.push_back({shadeOfLinear(of.x * factor.x), shadeOfLinear(of.y * factor.y),
+                                     shadeOfLinear(of.z * factor.z)});
+        }
     }
 
-    void addCorners(const GltfJson& primitive, std::int64_t mode, std::int64_t before,
+    void addCorners(const ReadJson& primitive, std::int64_t mode, std::int64_t before,
                     std::int64_t points, std::vector<Triangle>& triangles) {
         std::optional<GltfArray> indices;
         if (primitive.contains("indices")) indices = arrayAt(primitive, "indices", 1);
+        const bool areWhole =
+            !indices ||
+            ((indices->type == kUInt8 || indices->type == kUInt16 || indices->type == kUInt32) &&
+             !indices->isNormalized);
+        if (!areWhole) {
+            malformed("the indices of a mesh have the component type " +
+                      std::to_string(indices->type));
+        }
         const std::int64_t corners = indices ? indices->count : points;
         unpacking_.add(corners, sizeof(VertexId));
         const auto corner = [&](std::int64_t i) {
@@ -530,9 +546,9 @@ private:
     }
 
     /// \param count  that it must have; negative: any
-    GltfArray arrayAt(const GltfJson& object, const char* key, std::int64_t components,
+    GltfArray arrayAt(const ReadJson& object, const char* key, std::int64_t components,
                       std::int64_t count = -1) const {
-        const GltfJson& accessor =
+        const ReadJson& accessor =
             file_.at("accessors").at(static_cast<std::size_t>(wholeOf(object.at(key), key)));
         if (accessor.contains("sparse")) {
             unsupported("its array " + std::string(key) + " is sparse", kBlender);
@@ -551,12 +567,12 @@ private:
                       " values for " + std::to_string(count) + " points");
         }
         const std::int64_t each = array.components * componentBytes(array.type);
-        const GltfJson* const view = referred(file_, "bufferViews", accessor, "bufferView");
+        const ReadJson* const view = referred(file_, "bufferViews", accessor, "bufferView");
         if (view == nullptr) {
             unsupported("its array " + std::string(key) + " has no data (compressed elsewhere)",
                         kBlender);
         }
-        const GltfJson* const buffer = referred(file_, "buffers", *view, "buffer");
+        const ReadJson* const buffer = referred(file_, "buffers", *view, "buffer");
         if (buffer == nullptr || wholeAt(*view, "buffer", 0) != 0 || buffer->contains("uri")) {
             unsupported("its data lie in another file", "save it as GLB, all in one file");
         }
@@ -575,7 +591,7 @@ private:
         return array;
     }
 
-    const GltfJson& file_;
+    const ReadJson& file_;
     std::string_view bin_;
     const MeshReadOptions& options_;
     Unpacking unpacking_;
@@ -608,7 +624,7 @@ MeshFile decodeGlb(std::string_view bytes, const MeshReadOptions& options) {
         if (type == kBinChunk && bin.empty()) bin = chunk;
     }
     text = text.substr(0, text.find_last_not_of('\0') + 1);  // programs that pad it so
-    const GltfJson file = parseJson<GltfJson>(text);
+    const ReadJson file = parseJson<ReadJson>(text);
     if (!file.is_object()) malformed("its JSON can't be read");
     try {
         MeshFile read =
@@ -618,7 +634,7 @@ MeshFile decodeGlb(std::string_view bytes, const MeshReadOptions& options) {
         requireNoMore({"triangles", std::ssize(read.mesh.triangles), 12}, bytes.substr(length),
                       read.warnings);
         return read;
-    } catch (const GltfJson::exception&) {
+    } catch (const ReadJson::exception&) {
         malformed("its JSON is not as glTF has it");
     }
 }

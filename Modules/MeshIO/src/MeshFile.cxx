@@ -251,7 +251,10 @@ void writeScene(std::vector<ScenePart> parts, const std::filesystem::path& path,
     for (ScenePart& part : parts) {
         requireWritable(part.mesh, format, options, path.string());
         part.mesh = movedTo(options, part.mesh, path.string());
-        encoded.push_back({meshio::storedName(toUtf8(part.name)), part.color, &part.mesh});
+        requireWritable(part.mesh, format, options, path.string());
+        std::string name = meshio::storedName(toUtf8(part.name));
+        while (!isUtf8(name)) name.pop_back();  // cut within a character
+        encoded.push_back({std::move(name), part.color, &part.mesh});
     }
     writeBytes(path, [&](ByteSink& sink) { format.codec->encodeParts(encoded, options, sink); });
 }

@@ -103,15 +103,14 @@ void JoinedMeshes::moveTo(MeshFile& file, const MeshReadOptions& options) && {
 
 bool isIdentity(const AffineTransform& transform) {
     constexpr double kRounding = 1e-12;
-    double largest = 0;
     for (int axis = 0; axis < 3; ++axis) {
         for (int row = 0; row < 3; ++row) {
             const double due = axis == row ? 1 : 0;
-            largest = std::max(largest, std::abs(transform.linear.column[axis][row] - due));
+            if (!(std::abs(transform.linear.column[axis][row] - due) <= kRounding)) return false;
         }
-        largest = std::max(largest, std::abs(transform.offset[axis]));
+        if (!(std::abs(transform.offset[axis]) <= kRounding)) return false;
     }
-    return largest <= kRounding;
+    return true;
 }
 
 }  // namespace adaptiso::meshio

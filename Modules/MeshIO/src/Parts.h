@@ -42,7 +42,7 @@ private:
     bool haveNormals_ = true, haveColors_ = true;
 };
 
-/// How much `transform` of numbers differs from none; rounding aside it is none.
+/// Whether `transform` leaves points where they are, rounding aside; false with NaN.
 bool isIdentity(const AffineTransform& transform);
 
 }  // namespace adaptiso::meshio

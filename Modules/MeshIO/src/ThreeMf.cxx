@@ -101,6 +101,7 @@ struct Object3mf {
     TriangleMesh mesh{};
     std::vector<Placed3mf> components{};
     std::string colors{}, color{};  ///< numbers of a group and of one in it
+    bool isSolid = true;            ///< else a printer's support, or a thing beside the solid
 };
 
 struct Model3mf {
@@ -159,7 +160,12 @@ class ModelHandler : public XmlHandler {
 public:
     void onStart(const std::string& name, const XmlAttributes& attributes) override {
         const std::string_view element = localName(name);
+        const std::string_view prefix =
+            std::string_view(name).substr(0, name.size() - element.size());
         isDescription_ = false;
+        if (element == "model") core_ = prefix;
+        const bool isOfMaterials = element == "colorgroup" || element == "color";
+        if (prefix != core_ && !isOfMaterials) return;
         if (element == "vertex") {
             Vec3& p = object().mesh.points.emplace_back();
             p = {real(attributes, "x"), real(attributes, "y"), real(attributes, "z")};
@@ -178,6 +184,8 @@ public:
             object_ = &at->second;
             object_->colors = attributeOr(attributes, "pid", "");
             object_->color = attributeOr(attributes, "pindex", "0");
+            const std::string type = attributeOr(attributes, "type", "model");
+            object_->isSolid = type == "model" || type == "surface";
         } else if (element == "component") {
             object().components.push_back(placed(attributes));
         } else if (element == "item") {
@@ -189,7 +197,13 @@ public:
                 attributeOr(attributes, element == "base" ? "displaycolor" : "color", "")));
         }
     }
-    void onEnd(const std::string& /*element*/) override { isDescription_ = false; }
+    void onEnd(const std::string& name) override {
+        isDescription_ = false;
+        if (name == core_ + "object") object_ = nullptr;
+        if (localName(name) == "basematerials" || localName(name) == "colorgroup") {
+            colors_ = nullptr;
+        }
+    }
     void onText(std::string_view text) override {
         if (isDescription_) model.description.append(text);
     }
@@ -231,6 +245,7 @@ private:
         }
     }
 
+    std::string core_{};  ///< prefix of the core specification's elements, with its colon
     Object3mf* object_ = nullptr;
     std::vector<std::optional<Color>>* colors_ = nullptr;
     bool isDescription_ = false;
@@ -275,12 +290,13 @@ public:
                               const AffineTransform& from) {
             for (auto each = placed.rbegin(); each != placed.rend(); ++each) {
                 constexpr std::int64_t kEach = 1024;  // components may lead in a circle
-                unpacking_.add(kEach, 1);
-                open.push_back(
-                    {each->path.empty() ? path : each->path, each->id, from * each->transform});
+                const std::string& owner = each->path.empty() ? path : each->path;
+                unpacking_.add(kEach + std::ssize(owner) + std::ssize(each->id), 1);
+                open.push_back({owner, each->id, from * each->transform});
             }
         };
         push(model.items, root, {Mat3::diagonal(mm, mm, mm), {}});
+        std::int64_t supports = 0;
         while (!open.empty()) {
             const Placed3mf next = std::move(open.back());
             open.pop_back();
@@ -290,6 +306,10 @@ public:
                 malformed("it places an object " + printable(next.id) + ", which is not there");
             }
             const Object3mf& object = found->second;
+            if (!object.isSolid) {
+                ++supports;
+                continue;
+            }
             push(object.components, next.path, next.transform);
             if (object.mesh.points.empty()) continue;
             unpacking_.add(std::ssize(object.mesh.points), sizeof(Vec3));
@@ -301,6 +321,12 @@ public:
         marks.addText(model.description);
         file.frame = marks.frame();
         file.warnings = std::move(unpacking_.warnings);
+        if (supports > 0) {
+            file.warnings.push_back(
+                {"supports-left-out",
+                 counted(supports, "support or other object", "supports or other objects") +
+                     " beside the solid left out"});
+        }
         if (mm != 1) {
             file.warnings.push_back(
                 {"unit-converted", "its lengths in " + model.unit + " were turned into mm"});
@@ -313,11 +339,12 @@ public:
 
 private:
     const Model3mf& modelAt(const std::string& path) {
-        const auto known = models_.find(path);
+        const std::string key = lowerCase(path);  // as names in the archive
+        const auto known = models_.find(key);
         if (known != models_.end()) return known->second;
         ModelHandler handler;
         parseXml(files_.read(path), handler);
-        return models_.emplace(path, std::move(handler.model)).first->second;
+        return models_.emplace(key, std::move(handler.model)).first->second;
     }
 
     ZipFiles& files_;
@@ -328,15 +355,17 @@ private:
 };
 
 MeshFile decode3mf(std::string_view bytes, const MeshReadOptions& options) {
-    ZipFiles files(bytes);
-    return Reader3mf(files, options.storedBytes > 0 ? options.storedBytes : bytes.size(), options)
-        .read();
+    const std::size_t stored = options.storedBytes > 0 ? options.storedBytes : bytes.size();
+    ZipFiles files(bytes, stored);
+    return Reader3mf(files, stored, options).read();
 }
 
 /// Archives of many kinds begin alike; a 3MF has a model among its first files.
 bool is3mf(std::string_view head, std::uint64_t /*byteCount*/) {
-    return head.starts_with("PK\3\4") && (head.find(".model") != std::string_view::npos ||
-                                          head.find("Metadata/") != std::string_view::npos);
+    const auto holds = [&](std::string_view name) {
+        return head.find(name) != std::string_view::npos;
+    };
+    return head.starts_with("PK\3\4") && (holds(".model") || holds("3D/"));
 }
 
 }  // namespace

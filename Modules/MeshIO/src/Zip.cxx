@@ -92,7 +92,8 @@ void writeZip(const std::vector<std::pair<std::string, std::string>>& files, Byt
     sink << directory << end.append(2, '\0');
 }
 
-ZipFiles::ZipFiles(std::string_view bytes) : bytes_(bytes) {
+ZipFiles::ZipFiles(std::string_view bytes, std::size_t fileBytes)
+    : bytes_(bytes), fileBytes_(fileBytes) {
     const std::size_t end = bytes.rfind(kEndMark);
     if (end == std::string_view::npos || bytes.size() - end < kEndBytes) {
         damaged("its zip archive has no directory at its end");
@@ -101,7 +102,8 @@ ZipFiles::ZipFiles(std::string_view bytes) : bytes_(bytes) {
     record.take(6);
     std::uint64_t count = next<std::uint16_t>(record);
     std::uint64_t size = next<std::uint32_t>(record), begin = next<std::uint32_t>(record);
-    record.take(std::min<std::size_t>(next<std::uint16_t>(record), record.left()));
+    const std::size_t comment = next<std::uint16_t>(record);
+    record.take(std::min(comment, record.left()));
     behind_ = record.rest();
     std::uint64_t directoryEnd = end;
     if (begin == kIn64 || count == 0xFFFF) {
@@ -178,12 +180,15 @@ std::string ZipFiles::read(const std::string& name) {
     const std::string_view packed = source.take(static_cast<std::size_t>(entry.packedBytes));
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max() / 2;
     unpacked_ += std::min(entry.bytes, kMost - unpacked_);
+    requirePlausibleSize(fileBytes_, static_cast<std::size_t>(std::min<std::uint64_t>(
+                                         unpacked_, std::numeric_limits<std::size_t>::max())));
     if (entry.method == kStored) {
-        if (checksumOf(packed) != entry.checksum) damaged(printable(name) + " is damaged");
+        const bool isWhole = entry.bytes == entry.packedBytes;
+        if (!isWhole || checksumOf(packed) != entry.checksum) {
+            damaged(printable(name) + " is damaged");
+        }
         return std::string(packed);
     }
-    requirePlausibleSize(bytes_.size(), static_cast<std::size_t>(std::min<std::uint64_t>(
-                                            unpacked_, std::numeric_limits<std::size_t>::max())));
     // as a gzip file, whose end has the checksum and size
     std::string stream("\x1F\x8B\x08\0\0\0\0\0\0\0"sv);
     stream.append(packed);

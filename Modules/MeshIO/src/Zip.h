@@ -18,8 +18,9 @@ void writeZip(const std::vector<std::pair<std::string, std::string>>& files, Byt
 /// The files of a zip archive, stored or deflated. Names are found whatever their case.
 class ZipFiles {
 public:
+    /// \param fileBytes  of the file on disk, by which the unpacked size is limited
     /// \throws FileError  it is cut off, or two archives are joined
-    explicit ZipFiles(std::string_view bytes);
+    ZipFiles(std::string_view bytes, std::size_t fileBytes);
 
     bool has(const std::string& name) const;
     /// The bytes of a file. \throws FileError  it is not there, is encrypted, or damaged
@@ -35,6 +36,7 @@ private:
     };
 
     std::string_view bytes_, behind_;
+    std::size_t fileBytes_;
     std::map<std::string, Entry> entries_;
     std::uint64_t unpacked_ = 0;
 };

@@ -21,7 +21,7 @@ namespace adaptiso {
 namespace {
 
 constexpr std::int64_t kVertexGrain = 4096;
-constexpr std::int64_t kMostRayTests = 1 << 27;  // of all vertices; beyond, some are asked alone
+constexpr std::int64_t kMostRayTests = 1 << 27;  // of all vertices; of many vertices more
 
 /// The mesh with each triangle once, where all of it is there twice and so has no inside by the
 /// even-odd rule; none where it is not.
@@ -195,9 +195,11 @@ double expectedRayTests(const Surface& surface, const Surface& other,
 std::vector<std::optional<Side>> findSides(const Surface& surface, const Surface& other,
                                            const std::vector<VertexId>& spokesmen) {
     const std::int64_t count = std::ssize(spokesmen);
-    const bool isInVain = expectedRayTests(surface, other, spokesmen) > kMostRayTests;
-    const std::int64_t ofPiece = 2 * kMostRayTests / (count / kVertexGrain + 1),
-                       most = isInVain ? 1 << 18 : std::max<std::int64_t>(1 << 21, ofPiece);
+    const std::int64_t pieces = count / kVertexGrain + 1,
+                       ofPiece = std::max<std::int64_t>(1 << 21, 2 * kMostRayTests / pieces);
+    const bool isInVain = 2 * expectedRayTests(surface, other, spokesmen) >
+                          static_cast<double>(ofPiece) * static_cast<double>(pieces);
+    const std::int64_t most = isInVain ? 1 << 18 : ofPiece;
     std::vector<std::optional<Side>> sides(spokesmen.size());
     parallelForPieces(count, kVertexGrain, [&](std::int64_t begin, std::int64_t end) {
         std::int64_t tests = 0;

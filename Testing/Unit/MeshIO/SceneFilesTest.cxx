@@ -190,6 +190,10 @@ TEST(GlbFile, WhatIsNotReadIsNamed) {
         "POSITION has 4 values in 40 bytes");
     has(Square{.asset = R"("version":"1.0")"}.refusal(), "it is glTF '1.0'");
     has(Square{.nodes = R"([{"mesh":0,"scale":[0,1,1]}])"}.refusal(), "flattens");
+    has(Square{.nodes = R"([{"mesh":0,"rotation":[0,0,0,0]}])"}.refusal(), "flattens");
+    has(Square{.nodes = R"([{"mesh":0,"skin":0}])"}.refusal(), "a skeleton moves");
+    has(Square{.nodes = R"([{"mesh":0,"weights":[1]}])"}.refusal(), "shape keys move");
+    has(Square{.component = 5126}.refusal(), "indices of a mesh have the component type 5126");
     has(Square{.nodes = R"([{"children":[0],"mesh":0}])"}.refusal(), "a node twice");
     has(Square{.nodes = R"([{"mesh":7}])"}.refusal(), "JSON is not as glTF has it");
     has(Square{.accessor = R"("bufferView":-1)"}.refusal(), "is no size");
@@ -245,6 +249,11 @@ TEST(Scene, PartsComeBackInPlaceWithTheirColours) {
         EXPECT_EQ(bytesOf(path), once);
     }
     EXPECT_FALSE(holdsScene(findMeshFormat("all.ply")));
+    std::vector<ScenePart> named = twoParts();
+    named[0].name = std::string(199, 'a') + "\xE8\x84\xB3";  // cut within a character
+    const auto path = temporaryFile("named.3mf");
+    writeScene(named, path, inLps());
+    EXPECT_EQ(readMesh(path).mesh.triangles.size(), 84U);
 }
 
 using Files = std::vector<std::pair<std::string, std::string>>;
@@ -329,6 +338,36 @@ TEST(ThreeMfFile, WhatIsNotReadIsNamed) {
     std::string damaged = written(icosphere(2), "a.3mf");
     damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 0x55);
     EXPECT_THROW(decoded(damaged, "a.3mf"), FileError);
+}
+
+TEST(ThreeMfFile, OnlySolidsOfTheCoreSpecificationAreRead) {
+    const MeshFile file =
+        read3mf(model("xmlns:s=\"http://x/slice\"",
+                      "<s:slicestack id=\"5\"><s:slice><s:vertices><s:vertex x=\"1\" y=\"2\"/>"
+                      "</s:vertices></s:slice></s:slicestack><object id=\"3\" type=\"support\">"
+                      "<components><component objectid=\"1\"/></components></object>",
+                      "<item objectid=\"1\"/><item objectid=\"3\"/>"));
+    EXPECT_EQ(file.mesh.points, tetrahedron().points);
+    ASSERT_NE(findCode(file, "supports-left-out"), nullptr);
+    EXPECT_EQ(findCode(file, "supports-left-out")->text,
+              "1 support or other object beside the solid left out");
+}
+
+TEST(ThreeMfFile, WhatItTakesIsLimited) {
+    // a circle of components whose names are long
+    const std::string id(100'000, 'x');
+    const std::string part = "<component objectid=\"" + id + "\"/>";
+    const std::string circle =
+        "<object id=\"" + id + "\"><components>" + part + part + "</components></object>";
+    const auto isBomb = [](const std::string& text) {
+        return messageOf<FileError>([&] { read3mf(text); }).find("decompression bomb") !=
+               std::string::npos;
+    };
+    EXPECT_TRUE(isBomb(model("", circle, "<item objectid=\"" + id + "\"/>")));
+    std::string item = "<item objectid=\"1\" transform=\"";
+    for (int n = 0; n < 12; ++n) item += "nan ";
+    EXPECT_NE(messageOf<FileError>([&] { read3mf(model("", "", item + "\"/>")); }).find("flattens"),
+              std::string::npos);
 }
 
 TEST(ThreeMfFile, StoredAndZip64EntriesAreRead) {
