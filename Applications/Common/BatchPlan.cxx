@@ -12,7 +12,6 @@
 #include "Common/BatchSummary.h"
 #include "Common/Log.h"
 #include "Common/Naming.h"
-#include "Common/ProgramRun.h"
 #include "Common/RunApp.h"
 #include "Common/Sha256.h"
 #include "Common/UsageWords.h"
@@ -254,13 +253,17 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
         running.summaryFolder = running.folder;
     }
     if (batch.table == "-") throw UsageError("--csv -: give a file");
-    OutputPlan outputs({});
+    std::set<fs::path> outputs;
     for (const auto& [option, file] : {std::pair("--summary", running.summary),
                                        {"--csv", batch.table},
                                        {"--json", fs::path(common.json)},
                                        {"--log", logFile()}}) {
         if (file.empty() || file == "-") continue;
-        outputs.add(option, file);
+        std::error_code error;
+        if (!outputs.insert(fs::weakly_canonical(fs::absolute(file, error), error)).second) {
+            throw UsageError(std::string(option) + " " + file.string() +
+                             ": is the name of another output too");
+        }
         if (!batch.list.empty() && batch.list != "-") checkNotInput(file, batch.list);
         checkOutput(file, file == running.summary ? running.summaryFolder : fs::path());
         for (const PlannedRun& run : runs) {

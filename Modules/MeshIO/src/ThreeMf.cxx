@@ -13,6 +13,7 @@
 #include "Counts.h"
 #include "Parts.h"
 #include "Zip.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Xml.h"
 
