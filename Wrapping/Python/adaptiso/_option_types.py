@@ -72,6 +72,7 @@ class ReadOptions(TypedDict, total=False):
     level: Optional[int]
     channel: Optional[int]
     time: Optional[int]
+    image_space: Optional[Literal["lps", "ras"]]
     all_chunks: Optional[bool]
     resample_slices: Optional[bool]
 
@@ -82,4 +83,5 @@ class GiantOptions(TypedDict, total=False):
     zarr_level: Optional[int]
     channel: Optional[int]
     time: Optional[int]
+    image_space: Optional[Literal["lps", "ras"]]
     all_chunks: Optional[bool]
