@@ -10,6 +10,7 @@
 
 #include "InputFolder.h"
 #include "Seeds.h"
+#include "adaptiso/Core/Bytes.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/PointData.h"
@@ -132,7 +133,7 @@ void addSurfaceLists(Seeds& seeds) {
                                 "Site Theta Phi\nFp1 -92 -72\n",
                                 "<E><Electrode><Name>a</Name><Theta>9</Theta><Phi>2</"
                                 "Phi><Radius>1</Radius></Electrode></E>"};
-    for (char n = 0; n < 8; ++n) seeds.add("caps", std::string(1, n) + caps[n]);
+    for (int n = 0; n < 8; ++n) seeds.add("caps", std::string(1, static_cast<char>(n)) + caps[n]);
 }
 
 void addVtkFiles(Seeds& seeds) {
