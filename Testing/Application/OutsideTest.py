@@ -34,39 +34,6 @@ class OutsideTest(ApplicationTest):
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
-    def test_lead_field_runs_no_python_of_the_current_folder(self):
-        self.path("contextlib.py").write_text("open('ran', 'w')\n")
-        self.path("mne").mkdir()
-        self.path("cap.tsv").write_text("name\tx\ty\tz\nNAS\t0\t1\t2\n")
-        done = subprocess.run([program("bem"), "--t1", "ball.nii", "--electrodes", "cap.tsv", "--source-grid", "20",
-                               "--lead-field", "mne", "-o", "m"], cwd=self.folder, capture_output=True, text=True)
-        self.assertNotEqual(done.returncode, OK)
-        self.assertFalse(self.path("ran").exists())
-        self.assertFalse(self.path("m").exists())
-
-    def test_files_found_in_a_subjects_folder_are_no_links_out_of_it(self):
-        mri = self.path("subjects/bert/mri")
-        mri.mkdir(parents=True)
-        shutil.copy(self.path("ball.nii"), self.path("elsewhere/other.nii"))
-        for name in ("aseg.mgz", "T1.mgz"):
-            shutil.copy(self.path("ball.nii"), mri / "T1.mgz")
-            (mri / name).unlink(missing_ok=True)
-            (mri / name).symlink_to(self.path("elsewhere/other.nii"))
-            done = self.run_in(BAD_INPUT, program("bem"), "-s", "bert", "-d", "subjects")
-            self.assertIn(name, done.stderr)
-            (mri / name).unlink()
-
-    def test_a_log_names_no_folders_and_is_no_other_output(self):
-        shutil.copy(self.path("ball.nii"), self.path("elsewhere/x.nii"))
-        self.run_in(BAD_INPUT, program("mesh"), "elsewhere/x.nii", "--iso", "1e9", "-o", "x.stl", "--log", "log")
-        self.assertIn("x.nii: ", self.path("log").read_text())
-        self.assertNotIn("elsewhere", self.path("log").read_text())
-        done = self.run_in(2, program("mesh"), "ball.nii", "--iso", "100", "-o", "s.stl", "--log", "s.stl")
-        self.assertIn("is the name of another output too", done.stderr)
-        self.path("list").write_text("ball.nii\n")
-        self.run_in(BAD_INPUT, program("mesh"), "--list", "list", "--iso", "100", "-o", "{name}.stl", "--csv", "list")
-        self.assertEqual(self.path("list").read_text(), "ball.nii\n")
-
     def study(self):
         for number in (1, 2):
             folder = self.path(f"study/sub-{number:02}/anat")
@@ -584,6 +551,41 @@ class Submitting(OutsideTest):
         self.assertIn("is no name of a participant", done.stderr)
         self.assertFalse(self.path("jobs").exists())
         self.assert_untouched()
+
+
+class FoundFiles(OutsideTest):
+    def test_lead_field_runs_no_python_of_the_current_folder(self):
+        self.path("contextlib.py").write_text("open('ran', 'w')\n")
+        self.path("mne").mkdir()
+        self.path("cap.tsv").write_text("name\tx\ty\tz\nNAS\t0\t1\t2\n")
+        done = subprocess.run([program("bem"), "--t1", "ball.nii", "--electrodes", "cap.tsv", "--source-grid", "20",
+                               "--lead-field", "mne", "-o", "m"], cwd=self.folder, capture_output=True, text=True)
+        self.assertNotEqual(done.returncode, OK)
+        self.assertFalse(self.path("ran").exists())
+        self.assertFalse(self.path("m").exists())
+
+    def test_files_found_in_a_subjects_folder_are_no_links_out_of_it(self):
+        mri = self.path("subjects/bert/mri")
+        mri.mkdir(parents=True)
+        shutil.copy(self.path("ball.nii"), self.path("elsewhere/other.nii"))
+        for name in ("aseg.mgz", "T1.mgz"):
+            shutil.copy(self.path("ball.nii"), mri / "T1.mgz")
+            (mri / name).unlink(missing_ok=True)
+            (mri / name).symlink_to(self.path("elsewhere/other.nii"))
+            done = self.run_in(BAD_INPUT, program("bem"), "-s", "bert", "-d", "subjects")
+            self.assertIn(name, done.stderr)
+            (mri / name).unlink()
+
+    def test_a_log_names_no_folders_and_is_no_other_output(self):
+        shutil.copy(self.path("ball.nii"), self.path("elsewhere/x.nii"))
+        self.run_in(BAD_INPUT, program("mesh"), "elsewhere/x.nii", "--iso", "1e9", "-o", "x.stl", "--log", "log")
+        self.assertIn("x.nii", self.path("log").read_text())
+        self.assertNotIn("elsewhere", self.path("log").read_text())
+        done = self.run_in(2, program("mesh"), "ball.nii", "--iso", "100", "-o", "s.stl", "--log", "s.stl")
+        self.assertIn("is the name of another output too", done.stderr)
+        self.path("list").write_text("ball.nii\n")
+        self.run_in(BAD_INPUT, program("mesh"), "--list", "list", "--iso", "100", "-o", "{name}.stl", "--csv", "list")
+        self.assertEqual(self.path("list").read_text(), "ball.nii\n")
 
 
 class Hardening(OutsideTest):
