@@ -143,7 +143,7 @@ for (const browserName of kBrowsers) {
       assert.equal(info.totalTriangleCount, Number((await textOf(page, "#mesh .verdict")).split(" ")[0].replaceAll(",", "")));
       const { nodes } = JSON.parse(bytes.toString("utf8", 20, 20 + bytes.readUInt32LE(12)));
       assert.deepEqual(nodes[0].scale, [0.001, 0.001, 0.001]);
-      assert.equal(nodes[1].name, "balls.tri");
+      assert.equal(nodes[1].name, "balls.3mf");
     });
 
     it("makes the same bytes with every option of the form", async () => {
