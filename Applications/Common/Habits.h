@@ -7,8 +7,8 @@
 
 namespace adaptiso {
 
-/// What to do in place of an option that users know from other programs: "did you mean --iso?",
-/// "--vertices 2562 is ico 4". Names options that the program has only.
+/// Advice on an option of another program: "did you mean --iso?", "--vertices 2562 is ico 4".
+/// Names only options that this program has.
 /// \param program  "adaptiso-mesh"
 /// \param typed    without dashes
 /// \param known    long names of the program's options, without dashes

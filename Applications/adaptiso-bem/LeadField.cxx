@@ -67,8 +67,8 @@ open("lead-field-fwd.fif", "wb").write(b"".join(tags))
 print(mne.__version__)
 )";
 
-/// A Python with MNE: the user's own, or Debian's. Python imports from the current folder first:
-/// it is an empty one. \return  its name; empty: there is none
+/// Finds a Python with MNE: the user's own, or Debian's. Runs it in an empty folder, as Python
+/// imports from the current one first. \return  its name; empty: not installed
 std::string pythonWithMne() {
     const ScratchFolder folder;
     for (const char* const python : {"python3", "/usr/bin/python3"}) {

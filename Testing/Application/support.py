@@ -59,7 +59,7 @@ def onion():
 
 
 def without_progress(stderr):
-    """What a run printed but for the line of each minute."""
+    """Printed text without the progress lines that come each minute."""
     return re.sub(r"(?m)^.*, \d+ s\n", "", stderr)
 
 

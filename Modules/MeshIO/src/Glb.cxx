@@ -48,7 +48,7 @@ Mat3 turnToGltf(CoordinateFrame frame) {
 
 constexpr double kFullShade = 255, kFullLinear = 65535;
 
-/// Of a screen's shade, 0 to 255; to 1.
+/// Linear intensity, 0 to 1, of an sRGB value, 0 to 255.
 double linearOf(std::uint8_t shade) {
     const double s = shade / kFullShade;
     constexpr double kSteep = 0.04045;

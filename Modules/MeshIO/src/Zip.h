@@ -25,7 +25,7 @@ public:
     bool has(const std::string& name) const;
     /// The bytes of a file. \throws FileError  it is not there, is encrypted, or damaged
     std::string read(const std::string& name);
-    /// What follows the archive.
+    /// Bytes behind the end of the archive.
     std::string_view behind() const { return behind_; }
 
 private:

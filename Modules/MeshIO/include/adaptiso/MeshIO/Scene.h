@@ -17,7 +17,7 @@ struct ScenePart {
     TriangleMesh mesh;  ///< LPS mm
 };
 
-/// Whether a format holds several surfaces with their names and colours: GLB and 3MF.
+/// True for GLB and 3MF, which hold several surfaces with their names and colours.
 bool holdsScene(const MeshFormat& format);
 
 /// Writes surfaces into one file: a node each in GLB, an object each in 3MF. readMesh() reads them
