@@ -72,6 +72,15 @@ TriangleGroups::Budget TriangleGroups::Budget::of(std::int64_t triangles) {
             kFewPut + groups, kAllGroups + kTests * groups};
 }
 
+BoundingBox TriangleGroups::wholeBoxOf(const Node& node) const {
+    BoundingBox box = node.box;
+    for (const std::uint32_t hub : node.hubs) {
+        if (hub == kNone) break;
+        box.add(hubs_[hub]);
+    }
+    return box;
+}
+
 std::span<const Vec3> TriangleGroups::pointsOf(const Subtree& group) const {
     static_assert(sizeof(Corners) == 3 * sizeof(Vec3));
     return {corners_[begin(group)].data(),
@@ -207,9 +216,7 @@ void TriangleGroups::measure(const TriangleView& of, const Subtree& group) {
     Node& node = nodes_[group.node];
     node.box = BoundingBox::empty();
     const auto addHub = [&](std::uint32_t hub) {
-        if (hub == kNone || std::find(node.hubs.begin(), node.hubs.end(), hub) != node.hubs.end()) {
-            return;
-        }
+        if (hub == kNone || node.hasHub(hub)) return;
         if (node.hubs.back() != kNone) {
             node.hasMoreHubs = true;
             return;
@@ -219,15 +226,17 @@ void TriangleGroups::measure(const TriangleView& of, const Subtree& group) {
     };
     if (group.isLeaf()) {
         const std::span<const Vec3> points = pointsOf(group);
-        for (const Vec3& p : points) {
-            node.box.add(p);
-            node.mean += p - points[0];
-        }
+        for (const Vec3& p : points) node.mean += p - points[0];
         node.count = static_cast<double>(points.size());
         node.mean = points[0] + 1 / node.count * node.mean;
         for (const Vec3& p : points) node.moments.add(p - node.mean, 1);
         for (std::int64_t n = begin(group); n < end(group); ++n) {
             for (const std::uint32_t v : of.triangles[order_[n]]) addHub(hubOf_[v]);
+        }
+        for (std::int64_t n = begin(group); n < end(group); ++n) {
+            for (const std::uint32_t v : of.triangles[order_[n]]) {
+                if (hubOf_[v] == kNone || !node.hasHub(hubOf_[v])) node.box.add(of.points[v]);
+            }
         }
         return;
     }
@@ -247,6 +256,11 @@ void TriangleGroups::measure(const TriangleView& of, const Subtree& group) {
         for (const std::uint32_t hub : part.hubs) addHub(hub);
         node.hasMoreHubs = node.hasMoreHubs || part.hasMoreHubs;
     }
+    for (const Subtree& half : halves) {
+        for (const std::uint32_t hub : nodes_[half.node].hubs) {
+            if (hub != kNone && !node.hasHub(hub)) node.box.add(hubs_[hub]);
+        }
+    }
     node.mean += first.mean;
     for (const Subtree& half : halves) {
         const Node& part = nodes_[half.node];
@@ -260,35 +274,57 @@ void TriangleGroups::measure(const TriangleView& of, const Subtree& group) {
     }
 }
 
-namespace {
+/// No point of a group lies lower, but for rounding.
+double TriangleGroups::leastHeight(const Subtree& group, const Heights& over) const {
+    const Node& node = nodes_[group.node];
+    double least = over.lowestOf(node.box);
+    for (const std::uint32_t hub : node.hubs) {
+        if (hub == kNone) break;
+        if (!over.leavesOut(hubs_[hub])) least = std::min(least, over.of(hubs_[hub]));
+    }
+    return least - over.gap;
+}
 
-/// True if the hulls of two sets of points surely lie further apart than `reach`: the nearest
-/// points of hulls by [Gilbert1988], whose every direction bounds their distance from below.
-/// \param v  the difference of a point of each hull
-bool areHullsFarther(std::span<const Vec3> a, std::span<const Vec3> b, Vec3 v, double reach) {
+/// Walks down to what may hold a lower point than `lowest`, the half that may hold the lowest
+/// first.
+void TriangleGroups::findLowest(const Subtree& group, const Heights& over, Point& lowest) const {
+    if (group.isLeaf()) {
+        for (const Vec3& p : pointsOf(group)) {
+            const double height = over.of(p);
+            if (!(height < lowest.height) || over.leavesOut(p)) continue;
+            lowest = {p, height};
+            if (height <= over.enough) return;
+        }
+        return;
+    }
+    std::array<Subtree, 2> halves{group.left(), group.right()};
+    std::array<double, 2> least{leastHeight(halves[0], over), leastHeight(halves[1], over)};
+    if (least[1] < least[0]) {
+        std::swap(halves[0], halves[1]);
+        std::swap(least[0], least[1]);
+    }
+    for (int n = 0; n < 2; ++n) {
+        if (least[n] >= lowest.height || lowest.height <= over.enough) return;
+        findLowest(halves[n], over, lowest);
+    }
+}
+
+/// True if the hulls of two groups surely lie further apart than `reach`: the nearest points of
+/// hulls by [Gilbert1988], whose every direction bounds their distance from below.
+bool TriangleGroups::areHullsFarther(const TriangleGroups& a, const Subtree& i,
+                                     const TriangleGroups& b, const Subtree& j, double reach) {
     constexpr int kSteps = 24;
+    const double gap = std::max(a.gap_, b.gap_);
+    Vec3 v = a.nodes_[i.node].mean - b.nodes_[j.node].mean;
     std::array<Vec3, 3> simplex{v, v, v};
     for (int step = 0; step < kSteps; ++step) {
         const double length = norm(v);
         if (!(length > reach)) return false;
-        double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-        Vec3 low, high;
-        for (const Vec3& p : a) {
-            const double height = dot(v, p);
-            if (height < lowest) {
-                lowest = height;
-                low = p;
-            }
-        }
-        for (const Vec3& p : b) {
-            const double height = dot(v, p);
-            if (height > highest) {
-                highest = height;
-                high = p;
-            }
-        }
-        if (lowest - highest > reach * length) return true;
-        const Vec3 support = low - high;
+        Point low, high;  // the latter's height is negated
+        a.findLowest(i, {.along = v, .gap = gap * length}, low);
+        b.findLowest(j, {.along = -v, .gap = gap * length}, high);
+        if (low.height + high.height > reach * length) return true;
+        const Vec3 support = low.place - high.place;
         const std::array<Vec3, 3> before = simplex;
         Vec3 next = v;
         for (int n = 0; n < 3; ++n) {
@@ -305,8 +341,6 @@ bool areHullsFarther(std::span<const Vec3> a, std::span<const Vec3> b, Vec3 v, d
     return false;
 }
 
-}  // namespace
-
 /// A plane lies between two groups; of one mesh, it may pass through one or two hubs that both
 /// have.
 ///
@@ -315,18 +349,15 @@ bool areHullsFarther(std::span<const Vec3> a, std::span<const Vec3> b, Vec3 v, d
 bool TriangleGroups::areApart(const TriangleGroups& a, const Subtree& i, const TriangleGroups& b,
                               const Subtree& j, double reachMm) {
     const Node &m = a.nodes_[i.node], &n = b.nodes_[j.node];
-    if (squaredDistance(m.box, n.box) > reachMm * reachMm) return true;
+    if (squaredDistance(a.wholeBoxOf(m), b.wholeBoxOf(n)) > reachMm * reachMm) return true;
     if (reachMm > 0) {
-        return areHullsFarther(a.pointsOf(i), b.pointsOf(j), m.mean - n.mean,
-                               reachMm + std::max(a.gap_, b.gap_));
+        return areHullsFarther(a, i, b, j, reachMm + std::max(a.gap_, b.gap_));
     }
     std::array<Vec3, 2> hubs;
     std::size_t shared = 0;
     if (&a == &b) {
         for (const std::uint32_t hub : m.hubs) {
-            if (hub == kNone || std::find(n.hubs.begin(), n.hubs.end(), hub) == n.hubs.end()) {
-                continue;
-            }
+            if (hub == kNone || !n.hasHub(hub)) continue;
             if (shared == hubs.size()) return false;
             hubs[shared++] = a.hubs_[hub];
         }
@@ -364,10 +395,7 @@ bool TriangleGroups::areApart(const TriangleGroups& a, const Subtree& i, const T
     Vec3 w = sideways(inverse * sideways(between));
 
     const double gap = std::max(a.gap_, b.gap_);
-    const auto isHub = [&](const Vec3& p) {
-        return (shared > 0 && p == hubs[0]) || (shared > 1 && p == hubs[1]);
-    };
-    const std::span<const Vec3> ours = a.pointsOf(i), theirs = b.pointsOf(j);
+    const std::span<const Vec3> leftOut{hubs.data(), shared};
     constexpr int kTries = 4;
     for (int attempt = 0; attempt < kTries; ++attempt) {
         const double length = norm(w);
@@ -375,26 +403,15 @@ bool TriangleGroups::areApart(const TriangleGroups& a, const Subtree& i, const T
         w = 1 / length * w;
         // a group that reaches beyond the other's middle is hopeless
         const double ourMean = dot(w, m.mean - origin), theirMean = dot(w, n.mean - origin);
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        Vec3 lowest, highest;
-        for (const Vec3& p : ours) {
-            const double height = dot(w, p - origin);
-            if (!(height < low) || isHub(p)) continue;
-            low = height;
-            lowest = p - origin;
-            if (low <= theirMean) break;
-        }
-        if (low <= theirMean) return false;
-        for (const Vec3& p : theirs) {
-            const double height = dot(w, p - origin);
-            if (!(height > high) || isHub(p)) continue;
-            high = height;
-            highest = p - origin;
-            if (high >= ourMean) break;
-        }
-        if (high >= ourMean) return false;
+        Point ours, theirs;  // the latter's height is negated
+        a.findLowest(i, {w, origin, leftOut, theirMean, gap}, ours);
+        if (ours.height <= theirMean) return false;
+        b.findLowest(j, {-w, origin, leftOut, -ourMean, gap}, theirs);
+        if (theirs.height <= -ourMean) return false;
+        const double low = ours.height, high = -theirs.height;
         if (shared == 0 ? low - high > gap : low > gap && high < -gap) return true;
         // turn the plane until the farthest off of both lies right
+        const Vec3 lowest = ours.place - origin, highest = theirs.place - origin;
         const Vec3 off = shared == 0 ? lowest - highest : low < -high ? lowest : -highest;
         const Vec3 turn = sideways(inverse * sideways(off));
         const double gain = dot(turn, off);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -100,12 +102,37 @@ private:
     };
     class Inverse;
     struct Node {
-        BoundingBox box;
+        BoundingBox box;    ///< of all corners but the hubs below
         Vec3 mean;          ///< of all corners
         Symmetric moments;  ///< sums of their squared distances from the mean
         double count = 0;   ///< of corners
         std::array<std::uint32_t, kMostHubs> hubs{kNone, kNone, kNone, kNone};  ///< ascending
         bool hasMoreHubs = false;
+
+        bool hasHub(std::uint32_t hub) const {
+            return std::find(hubs.begin(), hubs.end(), hub) != hubs.end();
+        }
+    };
+    /// Heights of points along a direction of any length.
+    struct Heights {
+        Vec3 along, origin{};
+        std::span<const Vec3> places{};                            ///< whose points are left out
+        double enough = -std::numeric_limits<double>::infinity();  ///< no lower point is looked for
+        double gap = 0;                                            ///< that rounding may hide
+
+        double of(const Vec3& p) const { return dot(along, p - origin); }
+        double lowestOf(const BoundingBox& box) const {
+            return of({along.x > 0 ? box.minimum.x : box.maximum.x,
+                       along.y > 0 ? box.minimum.y : box.maximum.y,
+                       along.z > 0 ? box.minimum.z : box.maximum.z});
+        }
+        bool leavesOut(const Vec3& p) const {
+            return std::find(places.begin(), places.end(), p) != places.end();
+        }
+    };
+    struct Point {
+        Vec3 place;
+        double height = std::numeric_limits<double>::infinity();
     };
     struct Item {
         double key;
@@ -123,6 +150,7 @@ private:
         return std::min<std::int64_t>((group.firstLeaf + group.leaves) * kLeafTriangles,
                                       std::ssize(order_));
     }
+    BoundingBox wholeBoxOf(const Node& node) const;
     std::span<const Vec3> pointsOf(const Subtree& group) const;
 
     static Vec3 largestRatio(const Symmetric& spread, const Inverse& size);
@@ -130,6 +158,10 @@ private:
     Vec3 splitDirection(const TriangleView& of, std::span<const Item> items) const;
     void order(const TriangleView& of, std::vector<Item>& items, const Subtree& group);
     void measure(const TriangleView& of, const Subtree& group);
+    double leastHeight(const Subtree& group, const Heights& over) const;
+    void findLowest(const Subtree& group, const Heights& over, Point& lowest) const;
+    static bool areHullsFarther(const TriangleGroups& a, const Subtree& i, const TriangleGroups& b,
+                                const Subtree& j, double reach);
     static bool areApart(const TriangleGroups& a, const Subtree& i, const TriangleGroups& b,
                          const Subtree& j, double reachMm);
 
