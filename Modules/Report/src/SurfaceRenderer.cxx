@@ -22,8 +22,54 @@ constexpr double kFarBehind = -std::numeric_limits<double>::infinity();
 /// A corner as the view sees it: pixels, and mm towards the viewer.
 struct Corner {
     double x, y, depth;
-    Vec3 normal;
-    double value;
+};
+
+/// A triangle as the view sees it.
+struct ViewedFace {
+    Corner a, b, c;
+    double area = 0;  ///< twice; positive: from its back, as y runs down
+
+    ViewedFace() = default;
+    ViewedFace(const Corner& first, const Corner& second, const Corner& third)
+        : a(first),
+          b(second),
+          c(third),
+          area((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) {}
+
+    /// The weights of the corners at the middle of a pixel.
+    std::array<double, 3> weights(int x, int y) const {
+        const double px = x + 0.5, py = y + 0.5;
+        const double u = ((b.x - px) * (c.y - py) - (b.y - py) * (c.x - px)) / area;
+        const double v = ((c.x - px) * (a.y - py) - (c.y - py) * (a.x - px)) / area;
+        return {u, v, 1 - u - v};
+    }
+};
+
+/// First and last of some pixels of a row or a column.
+struct PixelRange {
+    int first, last;
+
+    /// Those whose middles lie between the least and the largest of three places.
+    static PixelRange between(double p, double q, double r, int size) {
+        return {std::max(0, static_cast<int>(std::ceil(std::min({p, q, r}) - 0.5))),
+                std::min(size - 1, static_cast<int>(std::floor(std::max({p, q, r}) - 0.5)))};
+    }
+    void add(const PixelRange& other) {
+        first = std::min(first, other.first);
+        last = std::max(last, other.last);
+    }
+    /// Less what lies beyond an edge of a face, but for a pixel's width.
+    void cut(const ViewedFace& face, const Corner& from, const Corner& to, int y) {
+        constexpr double kLevel = 1e-6;  // such an edge meets the row too far off to tell where
+        const double rise = to.y - from.y;
+        if (!(std::abs(rise) > kLevel)) return;
+        const double at = from.x + (to.x - from.x) * ((y + 0.5 - from.y) / rise);
+        if ((rise > 0) == (face.area > 0)) {
+            if (at - 0.5 < last - 1) last = static_cast<int>(std::max(at - 0.5, first - 2.0)) + 1;
+        } else if (at - 0.5 > first + 1) {
+            first = static_cast<int>(std::min(at - 0.5, last + 2.0)) - 1;
+        }
+    }
 };
 
 /// How surfaces are drawn.
@@ -46,6 +92,8 @@ struct Frame {
 
 /// Rows of a picture before they are averaged down.
 class Raster {
+    static constexpr std::uint32_t kNobody = 0xFFFFFFFF;
+
 public:
     Raster(const Frame& frame, const View& view, const Style& style)
         : view_(view),
@@ -60,14 +108,27 @@ public:
           highlight_(normalized(light_ + view.toViewer)),
           mmPerPixel_(frame.mmPerPixel / style.finer),
           colors_(static_cast<std::size_t>(width_) * rows_, style.ground),
-          depths_(colors_.size(), kFarBehind) {}
+          depths_(colors_.size(), kFarBehind),
+          owners_(colors_.size(), kNobody) {}
 
+    /// What covers a pixel is found first, so that each is shaded once for each surface.
     void draw(const SceneSurface& surface, const VertexNormals& normals) {
         surface_ = &surface;
         normals_ = &normals;
         drawsEdges_ = style_.drawsEdges ? *style_.drawsEdges : meanTrianglePixels() > 60;
-        surface.mesh.forEachTriangle(
-            [&](const Triangle& t) { drawTriangle(corner(t[0]), corner(t[1]), corner(t[2])); });
+        PixelRange columns{width_, -1}, rows{rows_, -1};
+        surface.mesh.forEachTriangle([&](const Triangle& t) {
+            const ViewedFace face(corner(t[0]), corner(t[1]), corner(t[2]));
+            if (face.area == 0) return;  // edge-on
+            const auto across = PixelRange::between(face.a.x, face.b.x, face.c.x, width_);
+            const auto down = PixelRange::between(face.a.y, face.b.y, face.c.y, rows_);
+            if (across.first > across.last || down.first > down.last) return;
+            columns.add(across);
+            rows.add(down);
+            cover(face, across, down,
+                  static_cast<std::uint32_t>(&t - surface.mesh.lps().triangles.data()));
+        });
+        shadeCovered(columns, rows);
     }
 
     Rendering finish() const {
@@ -88,8 +149,7 @@ private:
     Corner corner(VertexId v) const {
         const Vec3 p = surface_->mesh.point(v) - middle_;
         return {width_ / 2.0 + dot(p, right_) / mmPerPixel_,
-                height_ / 2.0 - dot(p, view_.up) / mmPerPixel_ - top_, dot(p, view_.toViewer),
-                toVec3((*normals_)[v]), surface_->valuesMm.empty() ? 0 : surface_->valuesMm[v]};
+                height_ / 2.0 - dot(p, view_.up) / mmPerPixel_ - top_, dot(p, view_.toViewer)};
     }
 
     double meanTrianglePixels() const {
@@ -98,38 +158,61 @@ private:
         return surfaceArea(surface_->mesh) / count / (mmPerPixel_ * mmPerPixel_);
     }
 
-    void drawTriangle(const Corner& a, const Corner& b, const Corner& c) {
-        const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-        if (area == 0) return;         // edge-on
-        const bool isBack = area > 0;  // y runs down
-        const auto first = [](double p, double q, double r) {
-            return std::max(0, static_cast<int>(std::ceil(std::min({p, q, r}) - 0.5)));
-        };
-        const auto last = [](double p, double q, double r, int size) {
-            return std::min(size - 1, static_cast<int>(std::floor(std::max({p, q, r}) - 0.5)));
-        };
-        const double longest =
-            std::max({std::hypot(b.x - a.x, b.y - a.y), std::hypot(c.x - b.x, c.y - b.y),
-                      std::hypot(a.x - c.x, a.y - c.y)});
-        const Vec3 flat = style_.isFlat ? flatNormal(a, b, c) : Vec3{};
-        const double edgePart = style_.halfEdge * longest / std::abs(area);
-        for (int y = first(a.y, b.y, c.y); y <= last(a.y, b.y, c.y, rows_); ++y) {
-            for (int x = first(a.x, b.x, c.x); x <= last(a.x, b.x, c.x, width_); ++x) {
-                const double px = x + 0.5, py = y + 0.5;
-                const double u = ((b.x - px) * (c.y - py) - (b.y - py) * (c.x - px)) / area;
-                const double v = ((c.x - px) * (a.y - py) - (c.y - py) * (a.x - px)) / area;
-                const double w = 1 - u - v;
+    std::size_t pixel(int x, int y) const { return static_cast<std::size_t>(y) * width_ + x; }
+
+    void cover(const ViewedFace& face, const PixelRange& across, const PixelRange& down,
+               std::uint32_t triangle) {
+        for (int y = down.first; y <= down.last; ++y) {
+            PixelRange row = across;
+            row.cut(face, face.a, face.b, y);
+            row.cut(face, face.b, face.c, y);
+            row.cut(face, face.c, face.a, y);
+            for (int x = row.first; x <= row.last; ++x) {
+                const auto [u, v, w] = face.weights(x, y);
                 if (u < 0 || v < 0 || w < 0) continue;
-                const double depth = u * a.depth + v * b.depth + w * c.depth;
-                const std::size_t n = static_cast<std::size_t>(y) * width_ + x;
+                const double depth = u * face.a.depth + v * face.b.depth + w * face.c.depth;
+                const std::size_t n = pixel(x, y);
                 if (!(depth > depths_[n])) continue;
                 depths_[n] = depth;
-                const bool isEdge = drawsEdges_ && std::min({u, v, w}) < edgePart;
-                colors_[n] =
-                    shade(style_.isFlat ? flat : u * a.normal + v * b.normal + w * c.normal,
-                          u * a.value + v * b.value + w * c.value, isBack, isEdge);
+                owners_[n] = triangle;
             }
         }
+    }
+
+    void shadeCovered(const PixelRange& columns, const PixelRange& rows) {
+        const std::vector<Triangle>& triangles = surface_->mesh.lps().triangles;
+        const std::span<const double> values = surface_->valuesMm;
+        std::uint32_t last = kNobody;
+        ViewedFace face;
+        Vec3 flat;
+        double edgePart = 0;
+        for (int y = rows.first; y <= rows.last; ++y) {
+            for (int x = columns.first; x <= columns.last; ++x) {
+                std::uint32_t& owner = owners_[pixel(x, y)];
+                if (owner == kNobody) continue;
+                const Triangle& t = triangles[owner];
+                if (owner != last) {
+                    last = owner;
+                    face = ViewedFace(corner(t[0]), corner(t[1]), corner(t[2]));
+                    if (style_.isFlat) flat = flatNormal(face.a, face.b, face.c);
+                    edgePart = style_.halfEdge * longestEdge(face) / std::abs(face.area);
+                }
+                owner = kNobody;
+                const auto [u, v, w] = face.weights(x, y);
+                const auto normal = [&](int n) { return toVec3((*normals_)[t[n]]); };
+                const auto value = [&](int n) { return values.empty() ? 0 : values[t[n]]; };
+                const bool isEdge = drawsEdges_ && std::min({u, v, w}) < edgePart;
+                colors_[pixel(x, y)] =
+                    shade(style_.isFlat ? flat : u * normal(0) + v * normal(1) + w * normal(2),
+                          u * value(0) + v * value(1) + w * value(2), face.area > 0, isEdge);
+            }
+        }
+    }
+
+    static double longestEdge(const ViewedFace& f) {
+        return std::max({std::hypot(f.b.x - f.a.x, f.b.y - f.a.y),
+                         std::hypot(f.c.x - f.b.x, f.c.y - f.b.y),
+                         std::hypot(f.a.x - f.c.x, f.a.y - f.c.y)});
     }
 
     Vec3 flatNormal(const Corner& a, const Corner& b, const Corner& c) const {
@@ -195,6 +278,7 @@ private:
     bool drawsEdges_ = false;
     std::vector<ReportColor> colors_;
     std::vector<double> depths_;
+    std::vector<std::uint32_t> owners_;  ///< triangles of `surface_` that are not shaded yet
 };
 
 }  // namespace
