@@ -110,6 +110,22 @@ std::vector<Finding> findTopologyFaults(const TriangleMesh& mesh, const Topology
     return findings;
 }
 
+void addJoined(std::int64_t joined, std::vector<Finding>& findings) {
+    if (joined == 0) return;
+    std::erase_if(findings, [&](Finding& finding) {
+        if (finding.key != "unusedVertices") return false;
+        finding.count -= joined;
+        finding.placeMm.reset();
+        return finding.count == 0;
+    });
+    Finding& finding = findings.emplace_back();
+    finding.key = "joinedVertices";
+    finding.what = joined == 1 ? "vertex at the place of another, joined with it"
+                               : "vertices at the place of another, joined with it";
+    finding.count = joined;
+    finding.isFault = false;
+}
+
 std::optional<Finding> crossingFinding(const TriangleMesh& mesh,
                                        const CrossingTriangles& triangles) {
     if (triangles.isEmpty()) return std::nullopt;

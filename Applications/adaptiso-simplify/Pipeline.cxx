@@ -78,9 +78,10 @@ void addCrossing(const TriangleMesh& mesh, const CrossingTriangles& triangles,
 
 /// Finds the input's faults. Crossings are looked for only where they may end the run; otherwise
 /// simplify() reports them.
-void check(const TriangleMesh& mesh, SimplifyRun& run) {
+void check(const TriangleMesh& mesh, std::int64_t joined, SimplifyRun& run) {
     run.input.topology = checkTopology(mesh);
     run.findings = findTopologyFaults(mesh, run.input.topology);
+    addJoined(joined, run.findings);
     if (run.command.requiresSound && isSound(run.findings)) {
         addCrossing(mesh, findCrossingTriangles(mesh), run.findings);
     }
@@ -110,20 +111,20 @@ void warnOfSize(const TriangleMesh& mesh, SimplifyRun& run) {
     if (warning) run.warnings.push_back(*warning);
 }
 
-/// Every triangle has its corners for itself.
-bool isSoup(const TopologyReport& topology) {
-    return topology.triangles > 1 &&
-           topology.count(TopologyDefect::BoundaryEdge) == 3 * topology.triangles;
+/// Parts that lie at each other and share no points: nothing goes along their borders.
+void warnOfPlaces(TriangleMesh mesh, SimplifyRun& run) {
+    if (run.input.topology.count(TopologyDefect::BoundaryEdge) == 0) return;
+    const std::int64_t apart = joinVertices(mesh);
+    if (apart == 0) return;
+    run.warnings.push_back({"surface-unsound",
+                            formatCount(apart) + (apart == 1 ? " point lies" : " points lie") +
+                                " at the place of another, and triangles do not go across; "
+                                "--weld joins them",
+                            baseName(run.input.file)});
 }
 
 /// Open borders are what some surfaces have; all else is worth a warning.
 void warnOfFindings(SimplifyRun& run) {
-    if (isSoup(run.input.topology)) {
-        run.warnings.push_back({"surface-unsound",
-                                "no two triangles share a point, so that none can go; weld the "
-                                "points first (an .stl is welded when it is read)",
-                                baseName(run.input.file)});
-    }
     for (const Finding& finding : run.findings) {
         if (!finding.isFault || finding.key == "borderEdges") continue;
         run.warnings.push_back({"surface-unsound", finding.text(), baseName(run.input.file)});
@@ -271,7 +272,7 @@ int runSimplify(const SimplifyCommand& command) {
     SimplifyRun run(command);
     checkOutputs(run);
 
-    const MeshFile input = run.stage("read", [&] {
+    MeshFile input = run.stage("read", [&] {
         return readMesh(command.input,
                         {.keepsPointArrays = true,
                          .inputCoordinates = statedFrame(command.inputCoordinates, 0)});
@@ -289,7 +290,11 @@ int runSimplify(const SimplifyCommand& command) {
     warnOfSize(input.mesh, run);
     const std::vector<PointData> data = run.stage("read", [&] { return readData(run); });
     const FrameChange change = chooseFrame(input, run);
-    run.stage("check", [&] { check(input.mesh, run); });
+    run.stage("check", [&] {
+        const std::int64_t joined = command.aim.weld ? joinVertices(input.mesh) : 0;
+        check(input.mesh, joined, run);
+        if (!command.aim.weld) warnOfPlaces(input.mesh, run);
+    });
 
     TriangleMesh shown;
     if (!run.failsSoundness()) {

@@ -38,7 +38,7 @@ Json inputJson(const SimplifyRun& run) {
 Json optionsJson(const SimplifyCommand& command) {
     Json json{{"inputCoordinates", inputCoordinatesJson(command.inputCoordinates)}};
     json.update(valuesJson(aimOptions(AimedSurface::Mesh), command.aim));
-    json.update(valuesJson(borderOptions(), command.aim));
+    json.update(valuesJson(simplifyOptions(), command.aim));
     json["requireSound"] = command.requiresSound;
     json["threads"] = orNull(command.common.threads);
     json["strict"] = command.common.isStrict;
@@ -226,7 +226,7 @@ Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh sh
     addVerdict(run, report);
     addInputs(run, report);
     addOptions(aimOptions(AimedSurface::Mesh), run.command.aim, report.options);
-    addOptions(borderOptions(), run.command.aim, report.options);
+    addOptions(simplifyOptions(), run.command.aim, report.options);
     addFindings(run, report);
     const PageFrame frame = pageFrame(input);
     report.frame = frame.name;

@@ -45,6 +45,9 @@ bool isSound(const std::vector<Finding>& findings);
 /// The faults of a surface's topology.
 std::vector<Finding> findTopologyFaults(const TriangleMesh& mesh, const TopologyReport& topology);
 
+/// Puts the vertices that --weld joined in place of those that no triangle uses for it.
+void addJoined(std::int64_t joined, std::vector<Finding>& findings);
+
 /// Triangles that cross others, or may.
 std::optional<Finding> crossingFinding(const TriangleMesh& mesh,
                                        const CrossingTriangles& triangles);

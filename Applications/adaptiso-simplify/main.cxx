@@ -70,7 +70,7 @@ void declareInput(CLI::App& app, SimplifyCommand& command) {
 void declareAim(CLI::App& app, SimplifyCommand& command) {
     OptionGroup(app, kAim).rows(aimOptions(AimedSurface::Mesh), command.aim);
     const OptionGroup kept(app, kKept);
-    kept.rows(borderOptions(), command.aim);
+    kept.rows(simplifyOptions(), command.aim);
     kept.flag("--require-sound", command.requiresSound,
               "Refuse (exit code 1, no surface written) a surface that is not closed, "
               "2-manifold and oriented, that crosses itself, or that has triangles without area "

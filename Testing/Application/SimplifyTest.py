@@ -232,8 +232,17 @@ class Soundness(SimplifyTest):
         alone = [(3 * n, 3 * n + 1, 3 * n + 2) for n in range(len(triangles))]
         self.path("soup.ply").write_text(ply((corners, alone)))
         report = self.simplify("soup.ply", "--max-error", "1", "-o", "out.ply")
-        self.assertRegex(lines(report["warnings"])[0], "^soup.ply: no two triangles share a point")
+        self.assertEqual(lines(report["warnings"])[0],
+                         "soup.ply: 798 points lie at the place of another, and triangles do not "
+                         "go across; --weld joins them")
         self.assertEqual(report["output"]["triangles"], 320)
+        joined = self.simplify("soup.ply", "--max-error", "1", "--weld", "-o", "joined.ply")
+        self.assertEqual((joined["warnings"], joined["input"]["sound"]), ([], True))
+        self.assertEqual(self.findings(joined), {"joinedVertices": 798})
+        self.write("whole.off", (points, triangles))
+        whole = self.simplify("whole.off", "--max-error", "1", "-o", "whole.ply")
+        for key in ("triangles", "closed", "components"):
+            self.assertEqual(joined["output"][key], whole["output"][key])
 
     def test_require_sound_refuses_with_the_reason(self):
         points, triangles = icosphere(10, 2)

@@ -53,6 +53,14 @@ class Simplify(unittest.TestCase):
         on_border = {tuple(v) for v in vertices if min(v[:2]) == 0 or max(v[:2]) == 20}
         self.assertLessEqual(on_border, {tuple(v) for v in kept.vertices})
 
+    def test_points_at_one_place_are_joined_by_weld(self):
+        vertices, faces = square()
+        split = np.asarray(vertices)[np.asarray(faces)].reshape(-1, 3)
+        alone = np.arange(len(split)).reshape(-1, 3)
+        self.assertEqual(len(adaptiso.simplify(split, alone, max_error=0.01).faces), len(faces))
+        self.assertLessEqual(
+            len(adaptiso.simplify(split, alone, max_error=0.01, weld=True).faces), 8)
+
     def test_what_is_no_manifold_is_told(self):
         faces = [[0, 1, 2], [1, 0, 3], [0, 1, 4]]
         points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]]

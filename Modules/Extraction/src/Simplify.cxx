@@ -9,6 +9,7 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/MeshQuality/NearestPlaces.h"
+#include "adaptiso/MeshQuality/Topology.h"
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/MeshSurface.h"
@@ -114,12 +115,19 @@ Simplified simplifyNearOne(const TriangleMesh& mesh, const SimplifyOptions& opti
 
 }  // namespace
 
-const Options<SimplifyOptions>& borderOptions() {
-    static const Options<SimplifyOptions> kRows{option<&SimplifyOptions::keepBorders>(
-        {.name = "keep-borders",
-         .key = "keepBorders",
-         .label = "Open borders kept",
-         .help = "Leave the points of open borders where they are, to the bit"})};
+const Options<SimplifyOptions>& simplifyOptions() {
+    static const Options<SimplifyOptions> kRows{
+        option<&SimplifyOptions::keepBorders>(
+            {.name = "keep-borders",
+             .key = "keepBorders",
+             .label = "Open borders kept",
+             .help = "Leave the points of open borders where they are, to the bit"}),
+        option<&SimplifyOptions::weld>(
+            {.name = "weld",
+             .key = "weld",
+             .label = "Points at one place joined",
+             .help = "Join points with equal coordinates first: programs that store a normal or a "
+                     "colour for each corner (Blender, glTF) part the surface there"})};
     return kRows;
 }
 
@@ -128,6 +136,13 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
     requireInRange(aims, "simplify");
     if (!aims.maxErrorMm && !aims.maxTriangles && !aims.reduction) {
         throw InvalidInput("simplify: neither maxErrorMm nor maxTriangles nor reduction is set");
+    }
+    if (options.weld) {
+        TriangleMesh joined = mesh;
+        joinVertices(joined);
+        SimplifyOptions others = options;
+        others.weld = false;
+        return simplify(joined, others);
     }
     const int exponent = detail::exponentTowardsOne(mesh);
     if (exponent == 0) return simplifyNearOne(mesh, options);

@@ -523,6 +523,20 @@ DuplicateReport findDuplicates(const TriangleMesh& mesh, const DuplicateOptions&
     return report;
 }
 
+std::int64_t joinVertices(TriangleMesh& mesh) {
+    requireIndices(mesh, "joinVertices");
+    const std::vector<VertexId> place = findPlaces(mesh.points);
+    std::vector<std::uint8_t> isJoined(mesh.points.size());
+    for (Triangle& t : mesh.triangles) {
+        for (VertexId& v : t) {
+            if (place[v] == kNowhere || place[v] == v) continue;
+            isJoined[v] = 1;
+            v = place[v];
+        }
+    }
+    return std::count(isJoined.begin(), isJoined.end(), 1);
+}
+
 namespace {
 
 using Edge = std::array<VertexId, 2>;  ///< the smaller number first

@@ -116,7 +116,8 @@ TriangleMesh extractPieces(const Extractor& extract, const ExtractionOptions& op
     record.isPart = kept.triangles.size() < full.mesh.triangles.size();
     full.mesh = {};
     if (!record.isPart) return whole();
-    Simplified made = simplify(kept, {aims, /*keepBorders=*/false, options.progress});
+    Simplified made =
+        simplify(kept, {aims, /*keepBorders=*/false, /*weld=*/false, options.progress});
     record.statistics = std::move(full.statistics);
     record.statistics.marchingCubesTriangles = std::ssize(kept.triangles);
     record.statistics.errorBoundMm = made.statistics.errorBoundMm;

@@ -217,6 +217,23 @@ TEST(Simplify, LeavesTwelveTrianglesOfACubeCutFine) {
     EXPECT_LT(result.mesh.triangles.size(), cube.triangles.size() / 20);
 }
 
+TEST(Simplify, JoinsVerticesAtOnePlaceByWeld) {
+    const TriangleMesh ball = icosphere(3, {}, 10);
+    TriangleMesh split;  // each triangle has its corners for itself
+    for (const Triangle& t : ball.triangles) {
+        const auto v = static_cast<VertexId>(split.points.size());
+        for (const VertexId corner : t) split.points.push_back(ball.points[corner]);
+        split.triangles.push_back({v, v + 1, v + 2});
+    }
+    SimplifyOptions options = within(0.5);
+    EXPECT_EQ(simplify(split, options).mesh.triangles.size(), ball.triangles.size());
+    options.weld = true;
+    const Simplified result = simplify(split, options);
+    expectSound(result.mesh);
+    expectBoundHolds(ball, result);
+    EXPECT_LT(result.mesh.triangles.size(), ball.triangles.size() / 2);
+}
+
 TEST(Simplify, ThinsOpenBordersWithinTheBound) {
     // half a torus: a tube with a circle of 80 edges at either end
     TriangleMesh tube = torusMesh(160, 80, 30, 10);

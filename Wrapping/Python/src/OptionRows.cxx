@@ -44,7 +44,7 @@ std::string optionRows() {
          {"check", without({"profile", "min-gap", "max-off"}, rules)},
          {"check_nested", without({"profile", "max-off"}, rules)},
          {"simplify",
-          joined({describe(aimOptions(AimedSurface::Mesh)), describe(borderOptions())})},
+          joined({describe(aimOptions(AimedSurface::Mesh)), describe(simplifyOptions())})},
          {"mend", describe(mendOptions())},
          {"labels", describe(aimOptions(AimedSurface::Walls))},
          {"bem", joined({describe(boundaryOptions()), describe(sourceOptions()),

@@ -82,7 +82,7 @@ void declareSimplify(py::module_& module) {
         [](const MeshData& mesh, const py::dict& options, int threads, py::object progress) {
             SimplifyOptions simplified;
             take(aimOptions(AimedSurface::Mesh), simplified, options);
-            take(borderOptions(), simplified, options);
+            take(simplifyOptions(), simplified, options);
             return simplifyMesh(mesh, std::move(simplified), threads, std::move(progress));
         },
         py::arg("mesh"), py::arg("options"), py::arg("threads"), py::arg("progress"));

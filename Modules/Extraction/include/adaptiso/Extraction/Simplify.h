@@ -17,11 +17,13 @@ namespace adaptiso {
 struct SimplifyOptions : SimplifyAims {
     /// Vertices on open borders stay, bit by bit.
     bool keepBorders = false;
+    /// Vertices at one place become one first.
+    bool weld = false;
     ProgressCallback progress;  ///< called as the work goes on; may be empty
 };
 
-/// --keep-borders
-const Options<SimplifyOptions>& borderOptions();
+/// --keep-borders, --weld
+const Options<SimplifyOptions>& simplifyOptions();
 
 /// Facts found about the input, and the bound proved for the result.
 struct SimplifyStatistics {

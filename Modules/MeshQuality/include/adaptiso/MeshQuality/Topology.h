@@ -131,6 +131,11 @@ struct DuplicateReport {
 /// Cost: O(V log V + T log T), in parallel; 16 bytes a vertex and 32 a triangle of memory.
 DuplicateReport findDuplicates(const TriangleMesh& mesh, const DuplicateOptions& options = {});
 
+/// Triangles name the first vertex at each place, so that parts which only touch there are one.
+/// Vertices keep their numbers; those that were named and are no longer stay, unused.
+/// \return how many these are   \pre triangles name points that are there \throws InvalidInput
+std::int64_t joinVertices(TriangleMesh& mesh);
+
 /// A stretch of border: edges that lie in one triangle only and hang together by their corners.
 struct Hole {
     std::int64_t edges = 0;
