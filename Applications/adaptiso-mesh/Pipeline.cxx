@@ -287,14 +287,9 @@ std::optional<Warning> sizeWarning(const SurfaceSummary& surface, const MeshOpti
 void warnOfSurfaces(MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
         auto noise =
-            noiseWarning(surface, run.options.extraction, meshedGeometry(run), "--max-error ");
+            noiseWarning(surface, run.options.extraction, meshedGeometry(run), "--max-error ",
+                         run.options.preprocessing.smoothSigmaMm ? "" : "--smooth ");
         if (noise) noise->file = surface.file.filename().string();
-        if (noise && !run.options.preprocessing.smoothSigmaMm) {
-            constexpr double kVoxels = 0.7;
-            noise->text += "; --smooth " +
-                           formatShort(kVoxels * leastPlaneDistanceMm(meshedGeometry(run))) +
-                           " weakens it in the image";
-        }
         for (const auto& warning :
              {countWarning(surface, run.options), digitsWarning(surface, run),
               insideOutWarning(surface), noise, sizeWarning(surface, run.options)}) {

@@ -11,7 +11,6 @@
 #include "Run.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
-#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::mesher {
 namespace {
@@ -21,16 +20,6 @@ Json inputJson(const MeshRun& run) {
     Json json{{"file", baseName(run.options.input)}};
     json.update(
         imageJson(input.format, input.geometry, input.pixelType, input.range, input.warnings));
-    return json;
-}
-
-Json preprocessedJson(const MeshRun& run) {
-    if (!run.preprocessed) return nullptr;
-    Json json = preprocessingJson(run.options.preprocessing, run.input.geometry.size);
-    json.update(geometryJson(run.preprocessed->geometry));
-    json["pixelType"] = toString(run.preprocessed->pixelType);
-    json["minimum"] = number(run.preprocessed->range.minimum);
-    json["maximum"] = number(run.preprocessed->range.maximum);
     return json;
 }
 
@@ -222,12 +211,14 @@ std::string jsonReport(const MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
         surfaces.push_back(surfaceJson(run, surface));
     }
-    return run.json("adaptiso-mesh/1", {{"input", inputJson(run)},
-                                        {"preprocessing", preprocessedJson(run)},
-                                        {"options", optionsJson(run.options)},
-                                        {"index", indexJson(run.index)},
-                                        {"surfaces", surfaces},
-                                        {"result", resultJson(run)}});
+    return run.json("adaptiso-mesh/1",
+                    {{"input", inputJson(run)},
+                     {"preprocessing", preprocessedJson(run.options.preprocessing,
+                                                        run.input.geometry.size, run.preprocessed)},
+                     {"options", optionsJson(run.options)},
+                     {"index", indexJson(run.index)},
+                     {"surfaces", surfaces},
+                     {"result", resultJson(run)}});
 }
 
 void printReport(std::ostream& out, const MeshRun& run) {

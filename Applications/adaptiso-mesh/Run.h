@@ -18,15 +18,9 @@
 #include "adaptiso/Report/Report.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::mesher {
-
-/// The preprocessed volume, from which the surfaces are made.
-struct PreprocessedSummary {
-    ImageGeometry geometry;
-    PixelType pixelType{};
-    ValueRange range{};
-};
 
 /// The volume as read.
 struct InputSummary {
@@ -66,7 +60,7 @@ struct MeshRun : ProgramRun {
 
     const MeshOptions& options;
     InputSummary input;
-    std::optional<PreprocessedSummary> preprocessed;
+    std::optional<PreprocessedImage> preprocessed;
     IndexSummary index;
     std::vector<SurfaceSummary> surfaces;
     std::vector<ShownSurface> shown{};  ///< for the page; empty unless one is wanted
