@@ -79,7 +79,8 @@ void checkOutputs(const MeshOptions& options) {
     OutputPlan plan({&options.input, 1});
     for (const IsovalueChoice& choice : options.isovalues) {
         const fs::path file = outputPath(options, isovalueText(choice));
-        outputFrame(options.frame, meshFormatOf(file));
+        const MeshFormat& format = meshFormatOf(file);
+        checkScale(options.scale, format, outputFrame(options.frame, format));
         plan.add("--output", file, ownFolder(options, file));
     }
     plan.check(options.common, options.report);
@@ -189,6 +190,29 @@ TriangleMesh extract(const VolumeView& volume, const SpanSpaceIndex& index, Mesh
     return mesh;
 }
 
+/// The factor of --scale and --fit for the pieces that are kept.
+double chooseScale(const TriangleMesh& mesh, const AffineTransform& toFile,
+                   const SurfaceSummary& summary, const MeshOptions& options) {
+    const std::string file = baseName(summary.file);
+    const bool isWhole = options.selection.keepsAll() || summary.choseFirst;
+    if (isWhole || !options.scale.bedMm) return chooseScale(options.scale, mesh, toFile, file);
+    return chooseScale(options.scale, selectComponents(mesh, options.selection), toFile, file);
+}
+
+/// Brings the figures of a surface in the scan to those of its file.
+void scaleFigures(SurfaceSummary& surface) {
+    const double factor = surface.scale, square = factor * factor, cube = square * factor;
+    surface.areaMm2 *= square;
+    if (surface.volumeMm3) *surface.volumeMm3 *= cube;
+    if (surface.roundingMm) *surface.roundingMm *= factor;
+    if (surface.statistics.errorBoundMm) *surface.statistics.errorBoundMm *= factor;
+    if (surface.verification) surface.verification->maxMm *= factor;
+    for (SurfaceComponent& component : surface.topology.components) {
+        component.areaMm2 *= square;
+        component.signedVolumeMm3 *= cube;
+    }
+}
+
 /// Makes one surface and writes it under its temporary name.
 SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index, double isovalue,
                            const IsovalueChoice& choice, MeshRun& run) {
@@ -206,7 +230,9 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     write.frame = summary.frame;
     // tkRAS and voxel indices are those of the image that the user has
     write.volume = frameVolume(summary.frame, run.input.geometry);
-    const FileDigits digits{summary.format, lpsToFrame(write.frame, write.volume),
+    const AffineTransform toFrame = lpsToFrame(write.frame, write.volume);
+    summary.scale = chooseScale(mesh, toFrame, summary, options);
+    const FileDigits digits{summary.format, scaled(toFrame, summary.scale),
                             requestedBoundMm(options.extraction, volume.geometry())};
     if (options.verifies) {
         summary.verification = run.stage(
@@ -235,9 +261,15 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     summary.diagonalMm = norm(boundingBox(finished.mesh).size());
     run.stage("write", [&] {
         AtomicOutput& output = run.addOutput(summary.file, ownFolder(options, summary.file));
-        output.write([&](const fs::path& path) { writeMesh(finished.mesh, path, write); });
+        output.write([&](const fs::path& path) {
+            if (summary.scale == 1) return writeMesh(finished.mesh, path, write);
+            write.isInFrame = true;
+            write.saysFrame = false;
+            writeMesh(transformed(finished.mesh, digits.toFrame), path, write);
+        });
         summary.bytes = fs::file_size(output.temporary());
     });
+    scaleFigures(summary);
     if (isShown) {
         run.shown.push_back({std::move(finished.mesh), std::move(finished.crossings)});
     }
@@ -264,8 +296,8 @@ const ImageGeometry& meshedGeometry(const MeshRun& run) {
 std::optional<Warning> digitsWarning(const SurfaceSummary& surface, const MeshRun& run) {
     const auto asked = requestedBoundMm(run.options.extraction, meshedGeometry(run));
     if (!asked) return std::nullopt;
-    return roundingWarning(surface.file.filename().string(), *surface.errorBoundMm(), *asked,
-                           surface.roundingMm.value_or(0), *surface.format);
+    return roundingWarning(surface.file.filename().string(), *surface.errorBoundMm(),
+                           *asked * surface.scale, surface.roundingMm.value_or(0), *surface.format);
 }
 
 std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
@@ -295,6 +327,7 @@ void warnOfSurfaces(MeshRun& run) {
               insideOutWarning(surface), noise, sizeWarning(surface, run.options)}) {
             if (warning) run.warnings.push_back(*warning);
         }
+        noteScale(surface.scale, surface.file.filename().string(), run.warnings);
     }
     run.printNewWarnings();
 }

@@ -43,7 +43,8 @@ struct SurfaceSummary : SurfaceRecord {
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
     std::uintmax_t bytes = 0;
-    double diagonalMm = 0;  ///< of its box
+    double diagonalMm = 0;  ///< of its box in the scan
+    double scale = 1;       ///< of the file's coordinates, of which all lengths in the record are
 };
 
 /// A surface to show.

@@ -126,6 +126,7 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
                        "The points' frame: scanner RAS mm (default), scanner LPS mm, "
                        "FreeSurfer's surface RAS mm (default for its formats), or voxel "
                        "indices");
+    output.rows(scaleOptions(), options.scale);
     output.flag(
         "--no-check-crossings", [&options] { options.checksCrossings = false; },
         "Do not count the pairs of triangles that cross each other. The method adaptive makes "

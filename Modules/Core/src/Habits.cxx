@@ -120,6 +120,8 @@ constexpr Habit kHabits[] = {
     {"screenshot png snapshot render plot figure thumbnail", "", "pictures", ""},
     {"space frame coordinate-system coords ras lps tkr", "", "coordinates", ""},
     {"unit scale", "bem", "units", ""},
+    {"bed printer build-volume", "", "fit", ""},
+    {"resize shrink", "", "scale", ""},
     {"units unit scale", "", "", "lengths are in mm, as images and surfaces have them"},
     // running
     {"j n-cpus n-jobs n-procs nproc nprocs num-workers workers parallel", "", "jobs", ""},
