@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <string>
 
-#include "Common/Json.h"
 #include "Common/RunApp.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Preprocessing/Preprocess.h"
@@ -23,9 +22,5 @@ Preprocessed preprocessImage(Volume volume, const PreprocessOptions& options,
 /// "crop 10:90,0:256,5:236, smooth 1 mm, resample 0.8 mm (linear)": what was done to an image of
 /// this size.
 std::string preprocessingText(const PreprocessOptions& options, const Index3& size);
-
-/// The same for a report: crop, smoothSigmaMm, resampleMm, interpolation; null where not asked for,
-/// and null altogether when nothing was.
-Json preprocessingJson(const PreprocessOptions& options, const Index3& size);
 
 }  // namespace adaptiso

@@ -17,11 +17,11 @@
 #include <string_view>
 
 #include "Common/CommonOptions.h"
-#include "Common/Habits.h"
 #include "Common/Json.h"
 #include "Common/Log.h"
 #include "Common/UsageWords.h"
 #include "Common/Verdict.h"
+#include "adaptiso/Core/Habits.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Files/AtomicOutput.h"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "Common/Json.h"
+#include "Common/PrintScale.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/PointTransfer.h"
@@ -27,6 +28,7 @@ struct SurfaceSummary {
     std::int64_t triangles = 0, vertices = 0;
     TopologyReport topology;
     double areaMm2 = 0;
+    double scale = 1;  ///< of an output: of its coordinates
 };
 
 /// Sets the numbers and the area.
@@ -49,6 +51,12 @@ struct FrameChange {
     }
     TriangleMesh undo(TriangleMesh mesh) const {
         return move ? transformed(mesh, inverse(*move)) : std::move(mesh);
+    }
+    /// Scales the output; its file then says no frame. Distances stay those of the input.
+    void scale(double factor) {
+        if (factor == 1) return;
+        move = scaled(move.value_or(AffineTransform{}), factor);
+        isSaid = false;
     }
     /// Upper bound on the rounding of doubles on the way there and back.
     double roundingMm(const TriangleMesh& mesh) const;

@@ -7,9 +7,9 @@
 #include <span>
 #include <system_error>
 
-#include "Common/Habits.h"
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
+#include "adaptiso/Core/Habits.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 

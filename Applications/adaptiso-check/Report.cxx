@@ -9,7 +9,6 @@
 #include "Common/CommonFrame.h"
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
-#include "Common/PreprocessingOptions.h"
 #include "Common/ReportOutput.h"
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
@@ -20,6 +19,7 @@
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/SurfaceChecks/CheckJson.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::checker {
 namespace {

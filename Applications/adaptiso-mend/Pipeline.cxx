@@ -27,6 +27,7 @@ void checkOutputs(MendRun& run) {
     if (!command.output.empty()) {
         run.output.file = command.output;
         run.output.format = &meshFormatOf(command.output);
+        checkScale(command.scale, *run.output.format, command.frame);
         plan.add("--output", command.output);
     }
     plan.check(command.common, command.report);
@@ -137,16 +138,28 @@ void requireDigits(const MendRun& run) {
 
 void warnOfRounding(MendRun& run) {
     const double bound = std::max(run.resultToInputMm(), run.inputToResultMm());
-    const auto warning =
-        roundingWarning(baseName(run.output.file), bound, run.statistics.maxErrorMm, run.roundingMm,
-                        *run.output.format);
+    const auto warning = roundingWarning(baseName(run.output.file), bound,
+                                         run.statistics.maxErrorMm * run.output.scale,
+                                         run.roundingMm, *run.output.format);
     if (warning) run.warnings.push_back(*warning);
+}
+
+/// Brings distances, proved and measured in the input, to those of the file.
+void scaleDistances(double factor, MendRun& run) {
+    run.output.scale = factor;
+    for (double* const mm : {&run.statistics.resultToInputMm, &run.statistics.inputToResultMm,
+                             &run.roundingMm, &run.verification->maxMm}) {
+        *mm *= factor;
+    }
 }
 
 /// Writes the result, with the values at its points, in the frame that is asked for.
 void finish(TriangleMesh result, const MeshFile& input, MendRun& run) {
-    const FrameChange change =
-        changeFrame(input, run.input.file, run.command.frame, run.output.file);
+    FrameChange change = changeFrame(input, run.input.file, run.command.frame, run.output.file);
+    const double factor =
+        chooseScale(run.command.scale, result, change.move.value_or(AffineTransform{}),
+                    baseName(run.output.file));
+    change.scale(factor);
     if (change.isSaid) run.output.frame = change.frame;
     if (isCopied(input, change, run)) {
         summarize(result, run.output);
@@ -170,7 +183,9 @@ void finish(TriangleMesh result, const MeshFile& input, MendRun& run) {
                result, run);
         requireDigits(run);
     });
+    scaleDistances(factor, run);
     warnOfRounding(run);
+    noteScale(factor, baseName(run.output.file), run.warnings);
 }
 
 }  // namespace

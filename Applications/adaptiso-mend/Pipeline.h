@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "Common/PrintScale.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/Extraction/Mend.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -19,7 +20,8 @@ struct MendCommand {
     bool isDryRun = false;                 ///< no surface is written, `output` is left as it is
     std::filesystem::path output;          ///< empty: isDryRun
     std::optional<CoordinateFrame> frame;  ///< empty: the input's own
-    ReportOptions report;                  ///< none
+    PrintScale scale;
+    ReportOptions report;  ///< none
     CommonOptions common;
 };
 

@@ -78,6 +78,7 @@ Json foundJson(const MendRun& run) {
 Json optionsJson(const MendCommand& command) {
     Json json{{"inputCoordinates", inputCoordinatesJson(command.inputCoordinates)}};
     json.update(valuesJson(mendOptions(), command.aim));
+    json.update(valuesJson(scaleOptions(), command.scale));
     json["dryRun"] = command.isDryRun;
     json["threads"] = orNull(command.common.threads);
     json["strict"] = command.common.isStrict;
@@ -88,6 +89,7 @@ Json outputJson(const MendRun& run) {
     if (!run.isMended()) return nullptr;
     const MendStatistics& done = run.statistics;
     Json json = surfaceJson(run.output);
+    json["scale"] = number(run.output.scale);
     json["bytes"] = run.bytes;
     json["written"] = run.writesSurface();
     json["copied"] = run.isCopy;

@@ -17,6 +17,9 @@ void checkCombinations(const MendCommand& command) {
     if (command.output.empty() && !command.isDryRun) {
         throw UsageError("--output is missing: the file to write (or --dry-run)");
     }
+    if (command.isDryRun && command.scale.isWanted()) {
+        throw UsageError("--scale, --fit: are for the file to write, not with --dry-run");
+    }
 }
 
 constexpr const char* kFooter = R"(Examples:
@@ -51,6 +54,7 @@ void declareMendOptions(CLI::App& app, MendCommand& command) {
                        "The points' frame in the file: scanner RAS mm, scanner LPS mm, or "
                        "FreeSurfer's surface RAS mm (default: as the input has them)",
                        {"ras", "lps", "tkras"});
+    output.rows(scaleOptions(), command.scale);
     output.flag("--dry-run", command.isDryRun, "Report only; write no surface");
     declareCommonOptions(app, command.common, "no surface is then written, reports are");
     afterParsing(app, [&command] { checkCombinations(command); });

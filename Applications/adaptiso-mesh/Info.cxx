@@ -31,6 +31,7 @@
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
 #include "adaptiso/Preprocessing/LabelValues.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::mesher {
 

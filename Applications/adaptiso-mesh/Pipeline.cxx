@@ -1,6 +1,7 @@
 #include "Pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -35,8 +36,31 @@ constexpr const char* kProgram = "adaptiso-mesh";
 /// Pairs of triangles that cross, to be shown on the page; all are counted.
 constexpr std::int64_t kMaxShownPairs = 1000;
 
-std::string isovalueText(const IsovalueChoice& choice) {
-    return choice.isAutomatic() ? "auto" : formatNumber(*choice.value);
+/// An isovalue as names of files have it.
+struct NamedIsovalue {
+    std::string text;   ///< "135.83"
+    std::string exact;  ///< "135.83333"; "auto" while it is not known
+};
+
+/// To five digits, but for whole ones.
+std::string shortNumber(double value) {
+    constexpr double kDigits = 5, kMostDecimals = 15;
+    const double decimals = kDigits - 1 - std::floor(std::log10(std::abs(value)));
+    if (!(decimals <= kMostDecimals)) return formatNumber(value);
+    const double unit = std::pow(10, std::max(decimals, 0.0));
+    return formatNumber(std::round(value * unit) / unit);
+}
+
+/// All digits where fewer would name a surface of another value that was asked for.
+/// \param number  of the choice, whose value this is \param value  none: not known yet
+NamedIsovalue named(const MeshOptions& options, std::size_t number, std::optional<double> value) {
+    if (!value) return {"auto", "auto"};
+    NamedIsovalue name{shortNumber(*value), formatNumber(*value)};
+    for (std::size_t n = 0; n < options.isovalues.size(); ++n) {
+        const auto& other = options.isovalues[n].value;
+        if (n != number && other && shortNumber(*other) == name.text) name.text = name.exact;
+    }
+    return name;
 }
 
 /// "lh-iso50.surf.gii" of "lh.surf.gii": GIFTI surfaces have an extension of two parts.
@@ -50,12 +74,12 @@ fs::path insertBeforeExtension(const fs::path& path, const std::string& text) {
 }
 
 /// \param isOne  there is one isovalue
-fs::path outputPath(const fs::path& output, bool isOne, const std::string& isovalue) {
+fs::path outputPath(const fs::path& output, bool isOne, const NamedIsovalue& isovalue) {
     const std::string name = output.filename().string();
-    const std::string named =
-        replaced(replaced(name, "{iso}", isovalue), kIsoLabel, bidsLabel(isovalue));
-    if (named != name) return output.parent_path() / named;
-    return isOne ? output : insertBeforeExtension(output, "-iso" + isovalue);
+    const std::string filled =
+        replaced(replaced(name, "{iso}", isovalue.text), kIsoLabel, bidsLabel(isovalue.exact));
+    if (filled != name) return output.parent_path() / filled;
+    return isOne ? output : insertBeforeExtension(output, "-iso" + isovalue.text);
 }
 
 /// The file that the surface at an isovalue goes to.
@@ -63,9 +87,8 @@ fs::path outputPath(const fs::path& output, bool isOne, const std::string& isova
 /// Without an output in `options`: "<stem>-iso<isovalue>.vtp" in the current folder. An output
 /// with "{iso}" in its name has the isovalue in that place. Otherwise the output is taken as it
 /// is for one isovalue, and for several gets "-iso<isovalue>" before its extension.
-/// \param isovalue  as text: formatNumber(), or "auto" while it is not known yet
-fs::path outputPath(const MeshOptions& options, const std::string& isovalue) {
-    if (options.output.empty()) return inputStem(options.input) + "-iso" + isovalue + ".vtp";
+fs::path outputPath(const MeshOptions& options, const NamedIsovalue& isovalue) {
+    if (options.output.empty()) return inputStem(options.input) + "-iso" + isovalue.text + ".vtp";
     return outputPath(options.output, options.isovalues.size() == 1, isovalue);
 }
 
@@ -77,9 +100,10 @@ fs::path ownFolder(const MeshOptions& options, const fs::path& file) {
 /// Checks the outputs before the volume is read.
 void checkOutputs(const MeshOptions& options) {
     OutputPlan plan({&options.input, 1});
-    for (const IsovalueChoice& choice : options.isovalues) {
-        const fs::path file = outputPath(options, isovalueText(choice));
-        outputFrame(options.frame, meshFormatOf(file));
+    for (std::size_t n = 0; n < options.isovalues.size(); ++n) {
+        const fs::path file = outputPath(options, named(options, n, options.isovalues[n].value));
+        const MeshFormat& format = meshFormatOf(file);
+        checkScale(options.scale, format, outputFrame(options.frame, format));
         plan.add("--output", file, ownFolder(options, file));
     }
     plan.check(options.common, options.report);
@@ -189,14 +213,38 @@ TriangleMesh extract(const VolumeView& volume, const SpanSpaceIndex& index, Mesh
     return mesh;
 }
 
+/// The factor of --scale and --fit for the pieces that are kept.
+double chooseScale(const TriangleMesh& mesh, const AffineTransform& toFile,
+                   const SurfaceSummary& summary, const MeshOptions& options) {
+    const std::string file = baseName(summary.file);
+    const bool isWhole = options.selection.keepsAll() || summary.choseFirst;
+    if (isWhole || !options.scale.bedMm) return chooseScale(options.scale, mesh, toFile, file);
+    return chooseScale(options.scale, selectComponents(mesh, options.selection), toFile, file);
+}
+
+/// Brings the figures of a surface in the scan to those of its file.
+void scaleFigures(SurfaceSummary& surface) {
+    const double factor = surface.scale, square = factor * factor, cube = square * factor;
+    surface.areaMm2 *= square;
+    if (surface.volumeMm3) *surface.volumeMm3 *= cube;
+    if (surface.roundingMm) *surface.roundingMm *= factor;
+    if (surface.statistics.errorBoundMm) *surface.statistics.errorBoundMm *= factor;
+    if (surface.verification) surface.verification->maxMm *= factor;
+    for (SurfaceComponent& component : surface.topology.components) {
+        component.areaMm2 *= square;
+        component.signedVolumeMm3 *= cube;
+    }
+}
+
 /// Makes one surface and writes it under its temporary name.
+/// \param number  of the choice
 SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index, double isovalue,
-                           const IsovalueChoice& choice, MeshRun& run) {
+                           std::size_t number, MeshRun& run) {
     const MeshOptions& options = run.options;
     SurfaceSummary summary;
     summary.isovalue = isovalue;
-    summary.isAutomatic = choice.isAutomatic();
-    summary.file = outputPath(options, formatNumber(isovalue));
+    summary.isAutomatic = options.isovalues[number].isAutomatic();
+    summary.file = outputPath(options, named(options, number, isovalue));
     summary.format = &meshFormatOf(summary.file);
     summary.frame = outputFrame(options.frame, *summary.format);
 
@@ -206,7 +254,9 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     write.frame = summary.frame;
     // tkRAS and voxel indices are those of the image that the user has
     write.volume = frameVolume(summary.frame, run.input.geometry);
-    const FileDigits digits{summary.format, lpsToFrame(write.frame, write.volume),
+    const AffineTransform toFrame = lpsToFrame(write.frame, write.volume);
+    summary.scale = chooseScale(mesh, toFrame, summary, options);
+    const FileDigits digits{summary.format, scaled(toFrame, summary.scale),
                             requestedBoundMm(options.extraction, volume.geometry())};
     if (options.verifies) {
         summary.verification = run.stage(
@@ -235,9 +285,15 @@ SurfaceSummary makeSurface(const VolumeView& volume, const SpanSpaceIndex& index
     summary.diagonalMm = norm(boundingBox(finished.mesh).size());
     run.stage("write", [&] {
         AtomicOutput& output = run.addOutput(summary.file, ownFolder(options, summary.file));
-        output.write([&](const fs::path& path) { writeMesh(finished.mesh, path, write); });
+        output.write([&](const fs::path& path) {
+            if (summary.scale == 1) return writeMesh(finished.mesh, path, write);
+            write.isInFrame = true;
+            write.saysFrame = false;
+            writeMesh(transformed(finished.mesh, digits.toFrame), path, write);
+        });
         summary.bytes = fs::file_size(output.temporary());
     });
+    scaleFigures(summary);
     if (isShown) {
         run.shown.push_back({std::move(finished.mesh), std::move(finished.crossings)});
     }
@@ -264,8 +320,8 @@ const ImageGeometry& meshedGeometry(const MeshRun& run) {
 std::optional<Warning> digitsWarning(const SurfaceSummary& surface, const MeshRun& run) {
     const auto asked = requestedBoundMm(run.options.extraction, meshedGeometry(run));
     if (!asked) return std::nullopt;
-    return roundingWarning(surface.file.filename().string(), *surface.errorBoundMm(), *asked,
-                           surface.roundingMm.value_or(0), *surface.format);
+    return roundingWarning(surface.file.filename().string(), *surface.errorBoundMm(),
+                           *asked * surface.scale, surface.roundingMm.value_or(0), *surface.format);
 }
 
 std::optional<Warning> insideOutWarning(const SurfaceSummary& surface) {
@@ -287,19 +343,15 @@ std::optional<Warning> sizeWarning(const SurfaceSummary& surface, const MeshOpti
 void warnOfSurfaces(MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
         auto noise =
-            noiseWarning(surface, run.options.extraction, meshedGeometry(run), "--max-error ");
+            noiseWarning(surface, run.options.extraction, meshedGeometry(run), "--max-error ",
+                         run.options.preprocessing.smoothSigmaMm ? "" : "--smooth ");
         if (noise) noise->file = surface.file.filename().string();
-        if (noise && !run.options.preprocessing.smoothSigmaMm) {
-            constexpr double kVoxels = 0.7;
-            noise->text += "; --smooth " +
-                           formatShort(kVoxels * leastPlaneDistanceMm(meshedGeometry(run))) +
-                           " weakens it in the image";
-        }
         for (const auto& warning :
              {countWarning(surface, run.options), digitsWarning(surface, run),
               insideOutWarning(surface), noise, sizeWarning(surface, run.options)}) {
             if (warning) run.warnings.push_back(*warning);
         }
+        noteScale(surface.scale, surface.file.filename().string(), run.warnings);
     }
     run.printNewWarnings();
 }
@@ -334,9 +386,9 @@ int runMeshBatch(const MeshOptions& options) {
                          "--iso"};
     program.surfaceFiles = [&options](const fs::path& output, const auto&) {
         std::vector<fs::path> files;
-        for (const IsovalueChoice& choice : options.isovalues) {
-            files.push_back(
-                outputPath(output, options.isovalues.size() == 1, isovalueText(choice)));
+        for (std::size_t n = 0; n < options.isovalues.size(); ++n) {
+            files.push_back(outputPath(output, options.isovalues.size() == 1,
+                                       named(options, n, options.isovalues[n].value)));
         }
         return files;
     };
@@ -374,7 +426,7 @@ int runMesh(const MeshOptions& options) {
     run.index = {index.search(), index.memoryBytes()};
 
     for (std::size_t n = 0; n < isovalues.size(); ++n) {
-        run.surfaces.push_back(makeSurface(volume, index, isovalues[n], options.isovalues[n], run));
+        run.surfaces.push_back(makeSurface(volume, index, isovalues[n], n, run));
     }
     warnOfSurfaces(run);
     if (run.failsStrict()) run.dropOutputs();

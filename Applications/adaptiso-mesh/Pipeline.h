@@ -8,6 +8,7 @@
 #include "Common/BatchOptions.h"
 #include "Common/CommonOptions.h"
 #include "Common/ImageOptions.h"
+#include "Common/PrintScale.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
@@ -37,6 +38,7 @@ struct MeshOptions {
     IndexOptions index;
     ComponentSelection selection;
     std::optional<CoordinateFrame> frame;  ///< empty: the output format's own
+    PrintScale scale;
     bool checksCrossings = true;
     bool verifies = false;  ///< checks the method adaptive's promises by other means, too
     ReportOptions report;

@@ -11,7 +11,7 @@
 #include "Run.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
-#include "adaptiso/SurfacePipeline/SurfaceJson.h"
+#include "adaptiso/Json/OptionsJson.h"
 
 namespace adaptiso::mesher {
 namespace {
@@ -24,18 +24,9 @@ Json inputJson(const MeshRun& run) {
     return json;
 }
 
-Json preprocessedJson(const MeshRun& run) {
-    if (!run.preprocessed) return nullptr;
-    Json json = preprocessingJson(run.options.preprocessing, run.input.geometry.size);
-    json.update(geometryJson(run.preprocessed->geometry));
-    json["pixelType"] = toString(run.preprocessed->pixelType);
-    json["minimum"] = number(run.preprocessed->range.minimum);
-    json["maximum"] = number(run.preprocessed->range.maximum);
-    return json;
-}
-
 Json optionsJson(const MeshOptions& options) {
     Json json = surfaceOptionsJson(options.extraction, options.index, options.selection);
+    json.update(valuesJson(scaleOptions(), options.scale));
     json["threads"] = orNull(options.common.threads);
     json["strict"] = options.common.isStrict;
     return json;
@@ -51,11 +42,13 @@ MadeSurface madeSurface(const MeshRun& run, const SurfaceSummary& surface) {
 
 Json surfaceJson(const MeshRun& run, const SurfaceSummary& surface) {
     Json json = figuresJson(surfaceFigures(), madeSurface(run, surface));
-    json["output"] = {{"file", surface.file.filename().string()},
-                      {"format", surface.format->name},
-                      {"coordinates", frameWord(surface.frame)},
-                      {"bytes", surface.bytes},
-                      {"written", !run.failsStrict()}};
+    json["output"] = {
+        {"file", surface.file.filename().string()},
+        {"format", surface.format->name},
+        {"coordinates", surface.scale == 1 ? Json(frameWord(surface.frame)) : Json(nullptr)},
+        {"scale", number(surface.scale)},
+        {"bytes", surface.bytes},
+        {"written", !run.failsStrict()}};
     return json;
 }
 
@@ -69,13 +62,20 @@ std::string piecesText(const TopologyReport& topology) {
     return pieces + ", " + counted(cavities, "cavity", "cavities");
 }
 
+/// "STL (binary), RAS mm"
+std::string formatAndFrame(const SurfaceSummary& surface) {
+    return std::string(surface.format->name) + ", " +
+           (surface.scale == 1 ? std::string(toString(surface.frame))
+                               : "scaled by " + formatNumber(surface.scale));
+}
+
 void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& surface) {
     const bool isWritten = !run.failsStrict();
     const TopologyReport& topology = surface.topology;
     out << oneLine(surface.file.string()) << (isWritten ? "" : " (not written)") << ": isovalue "
         << (surface.isAutomatic ? formatShort(surface.isovalue) : formatNumber(surface.isovalue))
-        << (surface.isAutomatic ? " (chosen by Otsu's method)" : "") << ", " << surface.format->name
-        << ", " << toString(surface.frame) << '\n';
+        << (surface.isAutomatic ? " (chosen by Otsu's method)" : "") << ", "
+        << formatAndFrame(surface) << '\n';
     out << "  " << counted(topology.triangles, "triangle") << ", " << formatCount(topology.vertices)
         << " vertices, " << piecesText(topology) << "; marching cubes makes "
         << formatCount(surface.statistics.marchingCubesTriangles) << '\n';
@@ -162,6 +162,7 @@ void addOptions(const MeshRun& run, Report& report) {
     addOptions(aimOptions(AimedSurface::OfScan), options.extraction.adaptive, report.options);
     addOptions(indexOptions(), options.index, report.options);
     addOptions(pieceOptions(), options.selection, report.options);
+    addOptions(scaleOptions(), options.scale, report.options);
 }
 
 void addFindings(const SurfaceSummary& surface, Report& report) {
@@ -192,10 +193,8 @@ ReportTable surfaceTable(const MeshRun& run) {
     const auto& rows = surfaceFigures();
     ReportTable table{"Surfaces", figureColumns({"File", "Format, frame"}, rows), {}};
     for (const SurfaceSummary& surface : run.surfaces) {
-        const std::string format =
-            std::string(surface.format->name) + ", " + std::string(toString(surface.frame));
-        table.rows.push_back(
-            figureCells({nameOf(surface), format}, rows, madeSurface(run, surface)));
+        table.rows.push_back(figureCells({nameOf(surface), formatAndFrame(surface)}, rows,
+                                         madeSurface(run, surface)));
     }
     return table;
 }
@@ -222,12 +221,14 @@ std::string jsonReport(const MeshRun& run) {
     for (const SurfaceSummary& surface : run.surfaces) {
         surfaces.push_back(surfaceJson(run, surface));
     }
-    return run.json("adaptiso-mesh/1", {{"input", inputJson(run)},
-                                        {"preprocessing", preprocessedJson(run)},
-                                        {"options", optionsJson(run.options)},
-                                        {"index", indexJson(run.index)},
-                                        {"surfaces", surfaces},
-                                        {"result", resultJson(run)}});
+    return run.json("adaptiso-mesh/1",
+                    {{"input", inputJson(run)},
+                     {"preprocessing", preprocessedJson(run.options.preprocessing,
+                                                        run.input.geometry.size, run.preprocessed)},
+                     {"options", optionsJson(run.options)},
+                     {"index", indexJson(run.index)},
+                     {"surfaces", surfaces},
+                     {"result", resultJson(run)}});
 }
 
 void printReport(std::ostream& out, const MeshRun& run) {

@@ -18,15 +18,9 @@
 #include "adaptiso/Report/Report.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::mesher {
-
-/// The preprocessed volume, from which the surfaces are made.
-struct PreprocessedSummary {
-    ImageGeometry geometry;
-    PixelType pixelType{};
-    ValueRange range{};
-};
 
 /// The volume as read.
 struct InputSummary {
@@ -49,7 +43,8 @@ struct SurfaceSummary : SurfaceRecord {
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
     std::uintmax_t bytes = 0;
-    double diagonalMm = 0;  ///< of its box
+    double diagonalMm = 0;  ///< of its box in the scan
+    double scale = 1;       ///< of the file's coordinates, of which all lengths in the record are
 };
 
 /// A surface to show.
@@ -66,7 +61,7 @@ struct MeshRun : ProgramRun {
 
     const MeshOptions& options;
     InputSummary input;
-    std::optional<PreprocessedSummary> preprocessed;
+    std::optional<PreprocessedImage> preprocessed;
     IndexSummary index;
     std::vector<SurfaceSummary> surfaces;
     std::vector<ShownSurface> shown{};  ///< for the page; empty unless one is wanted

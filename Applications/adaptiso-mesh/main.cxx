@@ -118,14 +118,16 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
     output.text(
         "-o,--output", "OUT", options.output,
         "The file to write (default: <INPUT>-iso<V>.vtp in the current folder). {iso} in "
-        "its name stands for the isovalue, {isolabel} for the same in letters and digits "
-        "(411p5, m300); without them, several surfaces get -iso<V> before the extension. The "
+        "its name stands for the isovalue, to five digits where these tell it from the others, "
+        "{isolabel} for all of it in letters and digits (411p5, m300); without them, several "
+        "surfaces get -iso<V> before the extension. The "
         "format follows from the extension: " +
             meshExtensions());
     declareCoordinates(output, options.frame,
                        "The points' frame: scanner RAS mm (default), scanner LPS mm, "
                        "FreeSurfer's surface RAS mm (default for its formats), or voxel "
                        "indices");
+    output.rows(scaleOptions(), options.scale);
     output.flag(
         "--no-check-crossings", [&options] { options.checksCrossings = false; },
         "Do not count the pairs of triangles that cross each other. The method adaptive makes "

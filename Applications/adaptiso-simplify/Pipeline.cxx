@@ -38,6 +38,7 @@ void checkOutputs(SimplifyRun& run) {
     run.input.file = command.input;
     run.output.file = surfaceFile(command.output, command.input);
     run.output.format = &meshFormatOf(run.output.file);
+    checkScale(command.scale, *run.output.format, command.frame);
     std::vector<fs::path> inputs = command.data;
     inputs.push_back(command.input);
     OutputPlan plan(inputs);
@@ -98,9 +99,9 @@ void warnOfCount(SimplifyRun& run) {
 
 void warnOfRounding(SimplifyRun& run) {
     if (!run.command.aim.maxErrorMm) return;
-    const auto warning =
-        roundingWarning(baseName(run.output.file), run.errorBoundMm(), *run.command.aim.maxErrorMm,
-                        run.roundingMm, *run.output.format);
+    const auto warning = roundingWarning(baseName(run.output.file), run.errorBoundMm(),
+                                         *run.command.aim.maxErrorMm * run.output.scale,
+                                         run.roundingMm, *run.output.format);
     if (warning) run.warnings.push_back(*warning);
 }
 
@@ -210,9 +211,23 @@ MeshFile writeFiles(const TriangleMesh& mesh, TakenValues values, const MeshFile
     return readMesh(written);
 }
 
+/// Brings distances, proved and measured in the input, to those of the file.
+void scaleDistances(double factor, SimplifyRun& run) {
+    run.output.scale = factor;
+    for (double* const mm :
+         {&run.statistics.errorBoundMm, &run.roundingMm, &run.verification->maxMm}) {
+        *mm *= factor;
+    }
+}
+
 /// Everything from the simplified surface on; the surface is then under its temporary name.
 void finish(Simplified result, const MeshFile& input, const std::vector<PointData>& data,
-            const FrameChange& change, SimplifyRun& run) {
+            FrameChange change, SimplifyRun& run) {
+    const double factor =
+        chooseScale(run.command.scale, result.mesh, change.move.value_or(AffineTransform{}),
+                    baseName(run.output.file));
+    change.scale(factor);
+    if (change.isSaid) run.output.frame = change.frame;
     TakenValues values =
         run.stage("values", [&] { return takeValues(input, data, result.mesh, run); });
     TriangleMesh settled;
@@ -229,6 +244,7 @@ void finish(Simplified result, const MeshFile& input, const std::vector<PointDat
                run);
         requireDigits(run);
     });
+    scaleDistances(factor, run);
 }
 
 std::string refusal(const SimplifyRun& run) {
@@ -249,13 +265,6 @@ void requireProvable(const TriangleMesh& mesh, const SimplifyCommand& command) {
     throw InvalidInput("--max-error " + formatNumber(*command.aim.maxErrorMm) +
                        ": is less than 1e-12 of the diagonal of " + baseName(command.input) +
                        ", below the resolution of its coordinates; allow more");
-}
-
-FrameChange chooseFrame(const MeshFile& input, SimplifyRun& run) {
-    const FrameChange change =
-        changeFrame(input, run.input.file, run.command.frame, run.output.file);
-    if (change.isSaid) run.output.frame = change.frame;
-    return change;
 }
 
 /// A run for each of many surfaces. \return, \throws as runBatch()
@@ -289,7 +298,9 @@ int runSimplify(const SimplifyCommand& command) {
     requireProvable(input.mesh, command);
     warnOfSize(input.mesh, run);
     const std::vector<PointData> data = run.stage("read", [&] { return readData(run); });
-    const FrameChange change = chooseFrame(input, run);
+    const FrameChange change =
+        changeFrame(input, run.input.file, run.command.frame, run.output.file);
+    checkScale(command.scale, *run.output.format, change.frame);
     run.stage("check", [&] {
         const std::int64_t joined = command.aim.weld ? joinVertices(input.mesh) : 0;
         check(input.mesh, joined, run);
@@ -304,6 +315,7 @@ int runSimplify(const SimplifyCommand& command) {
         warnOfFindings(run);
         warnOfCount(run);
         warnOfRounding(run);
+        noteScale(run.output.scale, baseName(run.output.file), run.warnings);
     }
     if (!run.writesSurface()) run.dropOutputs();
     if (command.report.isWanted()) {

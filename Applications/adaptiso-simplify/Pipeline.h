@@ -8,6 +8,7 @@
 
 #include "Common/BatchOptions.h"
 #include "Common/CommonOptions.h"
+#include "Common/PrintScale.h"
 #include "Common/ReportOutput.h"
 #include "adaptiso/Extraction/Simplify.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
@@ -24,6 +25,7 @@ struct SimplifyCommand {
     bool requiresSound = false;
     std::filesystem::path output;          ///< a file, or a folder; empty: batch.outputFolder
     std::optional<CoordinateFrame> frame;  ///< empty: the input's own
+    PrintScale scale;
     BatchOptions batch;
     ReportOptions report;
     CommonOptions common;

@@ -39,6 +39,7 @@ Json optionsJson(const SimplifyCommand& command) {
     Json json{{"inputCoordinates", inputCoordinatesJson(command.inputCoordinates)}};
     json.update(valuesJson(aimOptions(AimedSurface::Mesh), command.aim));
     json.update(valuesJson(simplifyOptions(), command.aim));
+    json.update(valuesJson(scaleOptions(), command.scale));
     json["requireSound"] = command.requiresSound;
     json["threads"] = orNull(command.common.threads);
     json["strict"] = command.common.isStrict;
@@ -48,6 +49,7 @@ Json optionsJson(const SimplifyCommand& command) {
 Json outputJson(const SimplifyRun& run) {
     if (run.failsSoundness()) return nullptr;
     Json json = surfaceJson(run.output);
+    json["scale"] = number(run.output.scale);
     json["bytes"] = run.bytes;
     json["written"] = run.writesSurface();
     json["wantedTriangles"] = orNull(run.statistics.wantedTriangles);

@@ -87,6 +87,7 @@ void declareOutput(CLI::App& app, SimplifyCommand& command) {
                        "The points' frame in the file: scanner RAS mm, scanner LPS mm, "
                        "FreeSurfer's surface RAS mm, or voxel indices (default: as the "
                        "input has them)");
+    output.rows(scaleOptions(), command.scale);
     declareReportOptions(app, command.report, kOutput);
 }
 

@@ -102,10 +102,17 @@ class Names(ApplicationTest):
         self.assertEqual(done.stderr, "")
 
     def test_isovalues_are_written_short(self):
-        for text in ("100.50", "1e2", "+99", "101.0"):
+        for text in ("100.50", "1e2", "+99", "101.0", "102.04567"):
             self.mesh("scans/ball.v2.nii", f"--iso={text}")
-        self.assertEqual(self.names(), ["ball.v2-iso100.5.vtp", "ball.v2-iso100.vtp",
-                                        "ball.v2-iso101.vtp", "ball.v2-iso99.vtp", "scans"])
+        names = ["ball.v2-iso100.5.vtp", "ball.v2-iso100.vtp", "ball.v2-iso101.vtp", "ball.v2-iso102.05.vtp",
+                 "ball.v2-iso99.vtp", "scans"]
+        self.assertEqual(self.names(), names)
+
+    def test_isovalues_that_five_digits_do_not_tell_apart_are_written_whole(self):
+        self.mesh("scans/ball.v2.nii", "--iso", "98.04567", "--iso", "98.046", "--iso", "99.04567", "-o", "a.ply")
+        self.mesh("scans/ball.v2.nii", "--iso", "98.04567", "-o", "a-{isolabel}.ply")
+        self.assertEqual(self.names(), ["a-98p04567.ply", "a-iso98.04567.ply", "a-iso98.046.ply",
+                                        "a-iso99.046.ply", "scans"])
 
     def test_several_isovalues(self):
         self.mesh("scans/ball.v2.nii", "--iso", "90", "--iso", "100", "-o", "out.stl")

@@ -317,7 +317,7 @@ class Habits(ApplicationTest):
 
     def setUp(self):
         super().setUp()
-        text = (SOURCE / "Applications/Common/Habits.cxx").read_text()
+        text = (SOURCE / "Modules/Core/src/Habits.cxx").read_text()
         body = re.search(r"kHabits\[\] = \{\n(.*?)\n\};", text, re.S)[1]
         body = re.sub(r"//.*", "", body)
         body = re.sub(r'"\s*\n\s*"', "", body)  # a string on two lines

@@ -2,10 +2,13 @@
 
 import copy
 import gc
+import os
 import pickle
 import re
+import sys
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import adaptiso
 import numpy as np
@@ -100,6 +103,67 @@ class Values(unittest.TestCase):
             with np.errstate(all="ignore"), self.assertRaises(adaptiso.Error) as caught:
                 adaptiso.Mesh(*arguments)
             self.assertNotIn("\n", str(caught.exception))
+
+
+    def test_has_what_trimesh_and_pyvista_call_by_the_same_names(self):
+        mesh = sphere()
+        np.testing.assert_array_equal(mesh.points, mesh.vertices)
+        np.testing.assert_array_equal(mesh.bounds, [mesh.vertices.min(0), mesh.vertices.max(0)])
+        self.assertTrue(np.isnan(adaptiso.Mesh([], []).bounds).all())
+        self.assertTrue(mesh.is_watertight)
+        self.assertFalse(adaptiso.Mesh(mesh.vertices, mesh.faces[1:]).is_watertight)
+        flipped = np.concatenate([mesh.faces[1:], mesh.faces[:1, ::-1]])
+        self.assertFalse(adaptiso.Mesh(mesh.vertices, flipped).is_watertight)
+        self.assertEqual(mesh.simplify(max_error=0.3), adaptiso.simplify(mesh, max_error=0.3))
+        self.assertEqual(mesh.simplify(max_error=0.3).report, adaptiso.simplify(mesh, max_error=0.3).report)
+
+    def test_an_array_without_affine_is_in_voxel_indices(self):
+        self.assertEqual(sphere().frame, "voxel")
+        self.assertEqual(sphere(affine=LIA).frame, "ras")
+        self.assertEqual(sphere(spacing=(1, 1, 2)).frame, "ras")
+
+    def test_transforms_keep_the_outside_outside(self):
+        mesh = sphere(affine=LIA, max_error=0.1)
+        matrix = [[-2, 0, 0, 5], [0, 1, 1, 0], [0, 0, 1, -7], [0, 0, 0, 1]]  # mirrors, scales, shears
+        moved = mesh.transform(matrix)
+        points = mesh.vertices @ np.array(matrix)[:3, :3].T + (5, 0, -7)
+        np.testing.assert_allclose(moved.vertices, points, atol=1e-12)
+        self.assertAlmostEqual(moved.volume, 2 * mesh.volume, 6)
+        out = moved.vertices - moved.vertices.mean(axis=0)
+        self.assertGreater((out * moved.normals).sum(axis=1).min(), 0)
+        self.assertAlmostEqual(moved.error_bound, 2 * mesh.error_bound)
+        self.assertEqual((moved.frame, moved.report), ("ras", {}))
+        self.assertEqual(mesh.transform(np.eye(4)), mesh)
+        for bad in (np.eye(3), np.zeros((4, 4)), np.diag([1, 1, 1, 2]), np.diag([1, np.nan, 1, 1]), "turn"):
+            with self.assertRaisesRegex(adaptiso.Error, "^matrix"):
+                mesh.transform(bad)
+
+
+class Plots(InFolder):
+    def test_draws_without_a_display(self):
+        file = self.folder / "a.png"
+        with mock.patch.dict(os.environ):
+            os.environ.pop("DISPLAY", None)
+            sphere().plot(file)
+            self.assertEqual(file.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+            with mock.patch.dict(sys.modules, pyvista=None):
+                with self.assertRaisesRegex(adaptiso.Error, "^plot: (there is no display|needs PyVista)"):
+                    sphere().plot()
+                with self.assertRaisesRegex(adaptiso.Error, "color= needs PyVista"):
+                    sphere().plot(color="w")
+                with mock.patch.dict(sys.modules, {"adaptiso._vtk_data": None}), \
+                        self.assertRaisesRegex(adaptiso.Error, "needs PyVista .* or VTK"):
+                    sphere().plot()
+        for bad in (lambda: sphere().plot(self.folder / "a.jpg"), lambda: adaptiso.Mesh([], []).plot()):
+            with self.assertRaisesRegex(adaptiso.Error, "^plot: "):
+                bad()
+
+    @needs("vtkmodules")
+    def test_shows_by_pyvista_where_it_is(self):
+        pyvista = mock.MagicMock()
+        with mock.patch.dict(sys.modules, pyvista=pyvista):
+            sphere().plot(color="w")
+        pyvista.PolyData.return_value.plot.assert_called_once_with(color="w")
 
 
 class Files(InFolder):

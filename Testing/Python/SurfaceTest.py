@@ -397,9 +397,46 @@ class BadInput(unittest.TestCase):
         self.refuse("closed surfaces", ball(), -8, border="open", fill_cavities=True)
         self.refuse("min_volume 1000000: no piece", ball(), -8, min_volume=1e6)
 
-    def test_a_typing_error_is_python_s_own(self):
-        with self.assertRaises(TypeError):
-            adaptiso.surface(ball(), -8, maxerror=1)
+    def test_arguments_that_there_are_not_are_answered_by_ours(self):
+        for call, answer in (
+                (lambda: adaptiso.surface(ball(), -8, maxerror=1), r"'maxerror'; did you mean max_error=\?$"),
+                (lambda: adaptiso.surface(ball(), isovalue=-8), r"did you mean level=\?$"),
+                (lambda: adaptiso.surface(ball(), threshold=-8), r"did you mean level=\?$"),
+                (lambda: adaptiso.surface(ball(), -8, decimate=0.9), r"did you mean reduction=\?$"),
+                (lambda: adaptiso.surface(ball(), -8, sigma=1), r"did you mean smooth=\?$"),
+                (lambda: adaptiso.surface(ball(), -8, fwhm=1), r"smooth= takes the standard deviation"),
+                (lambda: adaptiso.surface(ball(), -8, labels=[1]), r"; adaptiso.labels makes"),
+                (lambda: adaptiso.surface(ball(), -8, xyzzy=1), r"keyword argument 'xyzzy'$"),
+                (lambda: adaptiso.surface(ball(), -8, 0.2), r"takes image, level by position; give the "
+                                                            r"others by name: max_error=, "),
+                (lambda: adaptiso.Index(ball()).surface(-8, border="open"), r"argument 'border'$"),
+                (lambda: adaptiso.simplify(ball(), target_reduction=0.9), r"did you mean reduction=\?$"),
+                (lambda: adaptiso.mend(ball(), smooth=1), r"; .*adaptiso.surface smooths images$")):
+            with self.assertRaisesRegex(TypeError, answer):
+                call()
+        with self.assertRaisesRegex(AttributeError, "did you mean adaptiso.surface"):
+            adaptiso.mesh
+
+    def test_preprocessing_that_cannot_be_done(self):
+        for message, options in (("crop 0:99,:,:: 0:99 along i: the image has", {"crop": "0:99,:,:"}),
+                                 ("crop '0:9': must be three ranges|crop 0:9: must be", {"crop": "0:9"}),
+                                 ("crop -9:,:,:: must be three", {"crop": np.s_[-9:, :, :]}),
+                                 ("crop .*: must be three", {"crop": np.s_[::2, :, :]}),
+                                 ("crop 7: must be three|must be", {"crop": 7.5}),
+                                 ("smooth 99: ", {"smooth": 99}), ("resample 99: ", {"resample": 99}),
+                                 ("interpolation: is for resample", {"interpolation": "nearest"}),
+                                 ("spacing 2: must be three", {"spacing": 2}),
+                                 ("affine and spacing", {"spacing": (1, 1, 2), "affine": np.eye(4)})):
+            self.refuse(message, ball(), -8, **options)
+
+    def test_steps_count_along_the_array_s_own_axes(self):
+        """Of a C-ordered array too, whose samples are read with its axes the other way round."""
+        volume = ball((24, 30, 36), (11, 14, 17))
+        mesh = adaptiso.surface(volume, -8, crop=np.s_[:, :, 17:], spacing=(1, 2, 3))
+        self.assertEqual(mesh.frame, "ras")
+        np.testing.assert_allclose(mesh.bounds, [(3, 12, 49.5), (19, 44, 75)], atol=0.3)  # closed half a voxel out
+        smooth = adaptiso.surface(volume, -8, smooth=1, resample=0.8)
+        self.assertAlmostEqual(smooth.volume / (4 / 3 * np.pi * 7.875**3), 1, delta=0.03)  # 1/8 voxel less of the radius
 
 
 class Interruption(unittest.TestCase):

@@ -83,6 +83,8 @@ constexpr WarningCode kCodes[] = {
     {"subject-not-there", "participants.tsv lists a participant without a folder"},
     {"supports-left-out", "a 3MF's supports, and objects that are no solid, were left out", true},
     {"surface-moved", "a head model's surface does not lie where it was given"},
+    {"surface-scaled",
+     "coordinates were scaled about the origin; the file does not lie on the scan", true},
     {"surface-unsound", "the surface has faults (holes aside)"},
     {"t2-weighted", "CSF is brighter than brain in an image given as a T1"},
     {"thickness-unusual", "skull or scalp of a head model is unusually thick, thin or uneven"},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -9,9 +10,14 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
+#include <variant>
+#include <vector>
 
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/Preprocessing/LabelValues.h"
 
 namespace adaptiso {
@@ -164,16 +170,100 @@ double halfSpanMm(const ImageGeometry& geometry, const Vec3& axis) {
 }  // namespace
 
 namespace {
+
 constexpr std::array<std::string_view, 3> kInterpolations{"linear", "bspline", "nearest"};
 constexpr NumberRule kLength{.least = 0, .isAbove = true, .unit = "mm"};
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const std::size_t end = text.find(separator);
+        parts.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
+/// Digits alone; no sign.
+std::optional<std::int64_t> parseIndex(std::string_view text) {
+    std::int64_t index = 0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), last, index);
+    if (error != std::errc{} || end != last || index < 0) return std::nullopt;
+    return index;
+}
+
+/// "10:90", "10:", ":90", ":"
+std::optional<IndexRange> parseRange(std::string_view text) {
+    const std::vector<std::string_view> bounds = split(text, ':');
+    if (bounds.size() != 2) return std::nullopt;
+    IndexRange range;
+    if (!bounds[0].empty()) {
+        const auto first = parseIndex(bounds[0]);
+        if (!first) return std::nullopt;
+        range.first = *first;
+    }
+    if (!bounds[1].empty()) {
+        range.end = parseIndex(bounds[1]);
+        if (!range.end) return std::nullopt;
+    }
+    return range;
+}
+
+/// "10:90,:,20:"
+std::optional<CropRanges> parseCrop(std::string_view text) {
+    const std::vector<std::string_view> parts = split(text, ',');
+    CropRanges ranges;
+    if (parts.size() != ranges.size()) return std::nullopt;
+    for (std::size_t axis = 0; axis < ranges.size(); ++axis) {
+        const std::optional<IndexRange> range = parseRange(parts[axis]);
+        if (!range) return std::nullopt;
+        ranges[axis] = *range;
+    }
+    return ranges;
+}
+
+OptionValue cropValue(const PreprocessOptions& options, const OptionFacts&) {
+    if (!options.crop) return {};
+    std::string text;
+    for (const auto& [first, end] : *options.crop) {
+        text += text.empty() ? "" : ",";
+        if (first != 0 || end) text += std::to_string(first);
+        text += ":";
+        if (end) text += std::to_string(*end);
+    }
+    return text;
+}
+
+void setCrop(PreprocessOptions& options, const OptionValue& value, const OptionFacts& facts) {
+    options.crop.reset();
+    const auto* const text = std::get_if<std::string>(&value);
+    if (text == nullptr) return;
+    options.crop = parseCrop(*text);
+    if (!options.crop) {
+        throw InvalidInput("crop " + *text + ": must be " + std::string(facts.textRule));
+    }
+}
+
 }  // namespace
 
 std::string_view toString(Interpolation interpolation) {
     return kInterpolations[static_cast<std::size_t>(interpolation)];
 }
 
-const Options<PreprocessOptions>& filterOptions() {
+const Options<PreprocessOptions>& preprocessOptions() {
     static const Options<PreprocessOptions> kRows{
+        {{.name = "crop",
+          .key = "crop",
+          .valueName = "I0:I1,J0:J1,K0:K1",
+          .help = "First keep these voxels only: indices from 0, the end not included; a bound "
+                  "left out is the image's border: 10:90,:,20:",
+          .isUsable = [](std::string_view text) { return parseCrop(text).has_value(); },
+          .textRule = "three ranges of voxel indices, as in 10:90,:,20:"},
+         OptionKind::Text,
+         true,
+         cropValue,
+         setCrop},
         option<&PreprocessOptions::smoothSigmaMm>(
             {.name = "smooth",
              .key = "smoothSigmaMm",
@@ -195,6 +285,14 @@ const Options<PreprocessOptions>& filterOptions() {
              .standard = "linear",
              .words = kInterpolations})};
     return kRows;
+}
+
+std::string optionOf(PreprocessStep step, const PreprocessOptions& options) {
+    const auto& row = preprocessOptions()[static_cast<std::size_t>(step)];
+    const OptionValue value = row.valueOf(options);
+    const auto* const text = std::get_if<std::string>(&value);
+    return std::string(row.facts.name) + " " +
+           (text != nullptr ? *text : formatNumber(std::get<double>(value)));
 }
 
 ImageGeometry isotropicGrid(const ImageGeometry& geometry, double stepMm) {

@@ -62,6 +62,34 @@ Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelTy
     return json;
 }
 
+Json preprocessingJson(const PreprocessOptions& options, const Index3& size) {
+    if (options.changesNothing()) return nullptr;
+    Json crop = nullptr;
+    if (options.crop) {
+        crop = Json::array();
+        for (std::size_t axis = 0; axis < size.size(); ++axis) {
+            const auto& [first, end] = (*options.crop)[axis];
+            crop.push_back(Json::array({first, end.value_or(size[axis])}));
+        }
+    }
+    return {{"crop", crop},
+            {"smoothSigmaMm", orNull(options.smoothSigmaMm)},
+            {"resampleMm", orNull(options.resampleMm)},
+            {"interpolation",
+             options.resampleMm ? Json(toString(options.interpolation)) : Json(nullptr)}};
+}
+
+Json preprocessedJson(const PreprocessOptions& options, const Index3& size,
+                      const std::optional<PreprocessedImage>& image) {
+    if (!image) return nullptr;
+    Json json = preprocessingJson(options, size);
+    json.update(geometryJson(image->geometry));
+    json["pixelType"] = toString(image->pixelType);
+    json["minimum"] = number(image->range.minimum);
+    json["maximum"] = number(image->range.maximum);
+    return json;
+}
+
 Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions& index,
                         const ComponentSelection& selection) {
     Json json = valuesJson(methodOptions(), extraction);

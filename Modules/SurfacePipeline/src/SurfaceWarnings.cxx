@@ -19,20 +19,25 @@ std::optional<Warning> labelsWarning(const std::optional<LabelValues>& labels, d
 }
 
 std::optional<Warning> noiseWarning(const SurfaceRecord& surface, const ExtractionOptions& options,
-                                    const ImageGeometry& volume, const std::string& option) {
-    constexpr double kMuch = 0.1, kThinningVoxels = 0.5;
+                                    const ImageGeometry& volume, const std::string& option,
+                                    const std::string& smoothing) {
+    constexpr double kMuch = 0.1, kThinningVoxels = 0.5, kSmoothingVoxels = 0.7;
     const auto& work = surface.statistics.adaptiveWork;
     const AdaptiveOptions& aims = options.adaptive;
     if (!work || aims.maxErrorMm || aims.maxTriangles || aims.reduction) return std::nullopt;
     const double part = static_cast<double>(work->trianglesKept) /
                         static_cast<double>(std::max<std::int64_t>(surface.madeTriangles, 1));
     if (!(part >= kMuch)) return std::nullopt;
-    return Warning{"noise-kept",
-                   formatShort(std::floor(100 * part)) +
-                       " % of the triangles are noise, which the default bound leaves at full "
-                       "resolution to save time; " +
-                       option + formatShort(kThinningVoxels * leastPlaneDistanceMm(volume)) +
-                       ", half a voxel, thins it"};
+    const double voxelMm = leastPlaneDistanceMm(volume);
+    return Warning{
+        "noise-kept",
+        formatShort(std::floor(100 * part)) +
+            " % of the triangles are noise, which the default bound leaves at full "
+            "resolution to save time; " +
+            option + formatShort(kThinningVoxels * voxelMm) + ", half a voxel, thins it" +
+            (smoothing.empty() ? ""
+                               : "; " + smoothing + formatShort(kSmoothingVoxels * voxelMm) +
+                                     " weakens it in the image")};
 }
 
 }  // namespace adaptiso

@@ -13,6 +13,7 @@ Ctrl+C ends a call. Nothing is printed: warnings go to the logger "adaptiso".
 import atexit as _atexit
 import logging as _logging
 import os as _os
+from typing import TYPE_CHECKING
 
 from . import _adaptiso, giant
 from ._adaptiso import Error, InternalError, __version__
@@ -29,6 +30,13 @@ from ._surface import Index, surface
 __all__ = ["Check", "Comparison", "Error", "HeadModel", "Image", "Index", "InternalError",
            "LabelSurfaces", "Mesh", "NoModel", "Region", "bem", "check", "check_nested", "compare",
            "giant", "labels", "load", "marching_cubes", "mend", "read", "simplify", "surface", "__version__"]
+
+if not TYPE_CHECKING:
+    def __getattr__(name: str) -> object:
+        meant = {"mesh": "surface", "isosurface": "surface", "contour": "surface",
+                 "decimate": "simplify", "repair": "mend", "load_mesh": "load"}.get(name)
+        raise AttributeError(f"module 'adaptiso' has no attribute '{name}'"
+                             + (f"; did you mean adaptiso.{meant}?" if meant else ""))
 
 # who wants to see the warnings says so by logging's own means
 _logging.getLogger("adaptiso").addHandler(_logging.NullHandler())

@@ -539,7 +539,7 @@ def _surfaces(name: str, framed: List[Tuple[Any, Optional[str]]], source: _Sourc
     if source.images and any(mesh.frame == "unknown" for mesh in meshes):
         raise Error(f"{name}: are of files that don't say their coordinate frame, so where they lie "
                     "in the image is not known; state it by input_coordinates=")
-    if len({mesh.frame for mesh in meshes}) > 1:
+    if len({mesh._data.frame for mesh in meshes}) > 1:
         raise Error(f"{name}: are not in one frame; load those in tkras with volume=")
     return meshes
 

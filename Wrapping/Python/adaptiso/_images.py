@@ -198,7 +198,7 @@ def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
     with i fastest, as files have them. \\raises Error"""
     if is_path(image):
         if affine is not None:
-            raise Error("affine: a file has its own; read it with adaptiso.read and give the array")
+            raise Error("affine, spacing: a file has its own; read it with adaptiso.read and give the array")
         found, scaling = _read(image)
         return prepared(found.array, found.affine, base_name(path("image", image)), found.format,
                         found.warnings)._replace(scaling=scaling)
@@ -209,19 +209,34 @@ def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
     if affine is None:
         affine = np.eye(4) if own_affine is None else own_affine
     elif own_affine is not None:
-        raise Error("affine: the image has its own; give its array and the affine")
+        raise Error("affine, spacing: the image has its own; give its array and the affine")
     return prepared(np.asfortranarray(array) if in_file_order else array, affine, "", kind,
                     [])._replace(scaling=scaling)
 
 
-def affine_of(value: Any) -> Affine:
+def stated_affine(affine: Any, spacing: Any) -> Any:
+    """The affine that the arguments `affine` and `spacing` state, or None. \\raises Error"""
+    if spacing is None:
+        return affine
+    if affine is not None:
+        raise Error("affine and spacing: give one of the two")
+    try:
+        steps = np.array(spacing, np.float64)
+    except (TypeError, ValueError, OverflowError):
+        steps = np.empty(0)
+    if steps.shape != (3,) or not (steps > 0).all():
+        raise Error(f"spacing {shown(spacing)}: must be three numbers above 0, in mm")
+    return np.diag([*steps, 1.0])
+
+
+def affine_of(value: Any, name: str = "affine", what: str = "voxel indices to RAS mm") -> Affine:
     """A matrix of voxel indices to scanner RAS mm. \\raises Error"""
     try:
         affine = np.array(value, dtype=np.float64) if _is_plain(value) else np.empty(0)
     except (TypeError, ValueError, OverflowError):
         affine = np.empty(0)
     if affine.shape != (4, 4):
-        raise Error(f"affine {shown(value)}: must be a 4 x 4 matrix, voxel indices to RAS mm")
+        raise Error(f"{name} {shown(value)}: must be a 4 x 4 matrix, {what}")
     return affine
 
 

@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import json
 import logging
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+import os
+import sys
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import is_path, path as checked_path, shown, word
+from ._arguments import (Progress, is_path, path as checked_path, progress as checked_progress, shown,
+                         threads as checked_threads, word)
 from ._images import affine_of, base_name, read
+from ._options import checked, takes
 from ._triangles import Faces, Triangles, Vertices
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._option_types import SimplifyOptions
 
 logger = logging.getLogger("adaptiso")
 
@@ -28,7 +37,7 @@ def is_identity(affine: Any) -> bool:
 
 
 class Mesh(Triangles[_adaptiso.MeshData]):
-    """A triangle surface in scanner RAS millimetres.
+    """A triangle surface in scanner RAS millimetres (of an array without affine: in voxel indices).
 
     Returned by `surface`, `Index.surface` and `load`, and made of arrays by ``Mesh(vertices,
     faces)``. Nothing of it changes, so threads may share it, and copies are not needed.
@@ -45,8 +54,8 @@ class Mesh(Triangles[_adaptiso.MeshData]):
     Attributes
     ----------
     frame : str
-        "ras"; "tkras" for a FreeSurfer surface whose volume is not known; "unknown" where a file
-        does not say its frame.
+        "ras"; "voxel", voxel indices, of an array without affine; "tkras" for a FreeSurfer surface
+        whose volume is not known; "unknown" where a file does not say its frame.
 
     Raises
     ------
@@ -113,7 +122,8 @@ class Mesh(Triangles[_adaptiso.MeshData]):
     @property
     def frame(self) -> str:
         """The frame of `vertices`."""
-        return self._data.frame
+        frame = self._data.frame
+        return "voxel" if frame == "ras" and is_identity(self._data.affine) else frame
 
     @property
     def area(self) -> float:
@@ -131,6 +141,88 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         edges = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
         return len(edges) == 0 or bool(np.unique(edges, axis=0, return_counts=True)[1].min() > 1)
 
+    @property
+    def is_watertight(self) -> bool:
+        """Closed, manifold and oriented, as `check` finds; that also looks for triangles that cross."""
+        return self._data.is_watertight
+
+    @takes("simplify")
+    def simplify(self, *, threads: int = 0, progress: Optional[Progress] = None,
+                 **options: Unpack[SimplifyOptions]) -> "Mesh":
+        """The mesh with fewer triangles, as `adaptiso.simplify` makes it.
+
+        Parameters
+        ----------
+        **options
+        threads, progress
+            As for `surface`.
+        """
+        if all(options.get(aim) is None for aim in ("max_error", "triangles", "reduction")):
+            raise Error("simplify: one of max_error, triangles and reduction must be given")
+        made, found = _adaptiso.simplify_mesh(self._data, checked("simplify", options),
+                                              checked_threads(threads), checked_progress(progress))
+        return Mesh._of(made, found)
+
+    def transform(self, matrix: Any) -> "Mesh":
+        """The mesh moved: of a mirroring `matrix` too the triangles are counter-clockwise seen from
+        outside, and normals point outside.
+
+        ``error_bound`` is of the surface moved alike. The mesh no longer knows its image, nor has it a
+        ``report``; ``frame`` is "ras" of a mesh in voxel indices, else kept.
+
+        Parameters
+        ----------
+        matrix : array_like of shape (4, 4)
+            Takes points (x, y, z, 1) of the mesh to new ones; the last row is 0, 0, 0, 1.
+        """
+        affine = affine_of(matrix, "matrix", "points to points")
+        data = self._data.moved(affine)
+        if self.error_bound is not None:
+            data.error_bound = self.error_bound * float(np.linalg.norm(affine[:3, :3], 2))
+        return Mesh._of(data)
+
+    def plot(self, file: Any = None, **options: Any) -> None:
+        """Show the mesh in a window, by PyVista where it is installed, else by VTK; or draw it.
+
+        Parameters
+        ----------
+        file : str or path, optional
+            A PNG file to draw the mesh into, seen from the front, in place of a window. Needs no
+            display and no other package.
+        **options
+            Of pyvista.PolyData.plot (``color="w"``, ``show_edges=True``), which they need.
+
+        Raises
+        ------
+        Error
+            No triangles, no display, or neither PyVista nor VTK.
+        """
+        if len(self.faces) == 0:
+            raise Error("plot: the mesh has no triangles")
+        if file is not None:
+            name = checked_path("file", file)
+            if options or not name.lower().endswith(".png"):
+                raise Error(f"plot: file={shown(name)}: is drawn as .png, without other options")
+            self._data.draw(name)
+            return
+        try:
+            picture = self.to_pyvista()
+        except ImportError:
+            picture = None
+        if picture is not None:
+            picture.plot(**options)
+            return
+        if options:
+            raise Error(f"plot: {next(iter(options))}= needs PyVista (pip install pyvista)")
+        try:
+            from ._vtk_data import show
+        except ImportError:
+            raise Error("plot: needs PyVista (pip install pyvista) or VTK (Debian: python3-vtk9); "
+                        "plot(file=\"mesh.png\") needs neither") from None
+        if sys.platform == "linux" and not os.environ.get("DISPLAY"):  # VTK would end the process
+            raise Error("plot: there is no display; plot(file=\"mesh.png\") needs none")
+        show(self.to_vtk())
+
     def save(self, path: Any, frame: Optional[str] = None) -> None:
         """Write the mesh in a format of adaptiso-mesh.
 
@@ -143,8 +235,9 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         path : str or path
             The extension chooses the format; the message about an unknown one lists all.
         frame : {"ras", "lps", "tkras", "voxel"}, optional
-            Of the points written. Default: "tkras" for FreeSurfer's formats, else "ras". A mesh of
-            unknown frame is written as it is, and its file says no frame.
+            Of the points written. Default: "tkras" for FreeSurfer's formats, else "ras" (of an array
+            without affine: voxel indices, as if they were mm). A mesh of unknown frame is written as it
+            is, and its file says no frame.
 
         Raises
         ------
@@ -185,7 +278,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
 
         Needs nibabel."""
         from nibabel import gifti
-        space = "NIFTI_XFORM_SCANNER_ANAT" if self.frame == "ras" else "NIFTI_XFORM_UNKNOWN"
+        space = "NIFTI_XFORM_SCANNER_ANAT" if self._data.frame == "ras" else "NIFTI_XFORM_UNKNOWN"
         points = gifti.GiftiDataArray(
             self.vertices.astype(np.float32), intent="NIFTI_INTENT_POINTSET",
             datatype="NIFTI_TYPE_FLOAT32",
@@ -219,10 +312,9 @@ class Mesh(Triangles[_adaptiso.MeshData]):
 
     def __repr__(self) -> str:
         bound = self.error_bound
-        unit, frame = " mm", {"ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm",
-                              "unknown": "unknown frame"}.get(self.frame, self.frame)
-        if self.frame == "ras" and is_identity(self._data.affine):
-            unit, frame = "", IN_VOXELS
+        frame = {"ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm", "unknown": "unknown frame",
+                 "voxel": IN_VOXELS}[self.frame]
+        unit = "" if self.frame == "voxel" else " mm"
         within = "" if bound is None else f", within {bound:.4g}{unit}"
         return (f"<adaptiso.Mesh of {len(self.faces):,} triangles, {len(self.vertices):,} "
                 f"vertices{within}, {frame}>")

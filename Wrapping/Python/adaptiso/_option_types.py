@@ -1,6 +1,6 @@
 """Generated from the library's rows of options: types of keyword arguments. Do not edit."""
 
-from typing import Literal, Optional, TypedDict
+from typing import Literal, Optional, Tuple, TypedDict, Union
 
 
 class SurfaceOptions(TypedDict, total=False):
@@ -13,6 +13,10 @@ class SurfaceOptions(TypedDict, total=False):
     largest: Optional[bool]
     min_volume: Optional[float]
     fill_cavities: Optional[bool]
+    crop: Optional[Union[str, Tuple[slice, slice, slice]]]
+    smooth: Optional[float]
+    resample: Optional[float]
+    interpolation: Optional[Literal["linear", "bspline", "nearest"]]
 
 
 class CheckOptions(TypedDict, total=False):

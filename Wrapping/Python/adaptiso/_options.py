@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import difflib
+import functools
 import inspect
 import json
 import re
 import textwrap
-from typing import Any, Callable, Dict, List, Mapping, Optional, TypeVar
+from typing import Any, Callable, Dict, List, Mapping, Optional, TypeVar, cast
 
 from . import _adaptiso
 from ._adaptiso import Error
@@ -19,6 +21,10 @@ _NAMES = {"refuse-missing-chunks": "all_chunks"}
 # `level` is the isovalue there
 _OWN_NAMES = {("giant", "level"): "zarr_level"}
 _TYPES = {"flag": "bool", "number": "float", "count": "int", "choice": "str", "text": "str"}
+# texts that may be slices: numpy.s_[10:90, :, 20:] for "10:90,:,20:"
+_SLICED = ("crop",)
+# functions by the names of programs, where they differ
+_FUNCTIONS = {"mesh": "surface"}
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -72,9 +78,18 @@ def _checked(name: str, value: Any, row: _Row) -> Any:
         return word(name, value, row["words"])
     if kind == "flag":
         return flag(name, value)
+    if name in _SLICED and isinstance(value, tuple):
+        value = ",".join(map(_range, value))
     if not isinstance(value, (str, int)) or isinstance(value, bool):
         raise Error(f"{name} {shown(value)}: must be {row['rule']}")
     return str(value)
+
+
+def _range(part: Any) -> str:
+    """A slice as the programs have it; else what they refuse."""
+    if not isinstance(part, slice) or part.step not in (None, 1):
+        return shown(part)
+    return ":".join("" if bound is None else str(bound) for bound in (part.start, part.stop))
 
 
 def _allows(row: _Row, value: float) -> bool:
@@ -84,12 +99,49 @@ def _allows(row: _Row, value: float) -> bool:
 
 def _documented(name: str, row: _Row) -> str:
     words = row.get("words")
-    kind = "{" + ", ".join(f'"{each}"' for each in words) + "}" if words else _TYPES[row["kind"]]
+    kind = "{" + ", ".join(f'"{each}"' for each in words) + "}" if words else \
+        "three slices or str" if name in _SLICED else _TYPES[row["kind"]]
     text = re.sub(r"--([a-z-]+)", lambda option: f"`{option[1].replace('-', '_')}`", row["help"])
     text = re.sub(r"\bMethod adaptive: (.)", lambda first: first[1].upper(), text)
     body = textwrap.fill(f"{text}.", 92, initial_indent="    ",
                          subsequent_indent="    ")
     return f"{name} : {kind}, optional\n{body}"
+
+
+def _advice(subject: str, typed: str, known: List[str]) -> str:
+    """The argument that is meant by one that there is not, by what the programs know of other
+    packages' names."""
+    program = {each: name for name, each in _FUNCTIONS.items()}.get(subject, subject)
+    options = [name.replace("_", "-") for name in known] + ["iso"] * ("level" in known and subject != "read")
+    answer = _adaptiso.habit_answer(f"adaptiso-{program}", typed, options)
+    if answer is None:
+        near = difflib.get_close_matches(typed, known, 1)
+        return f"; did you mean {near[0]}=?" if near else ""
+    for option, name in zip(options, [*known, "level"]):
+        answer = re.sub(rf"--{option}(?![a-z-])( (?=[A-Z0-9]))?", name + "=", answer)
+    for program, name in _FUNCTIONS.items():
+        answer = answer.replace(f"adaptiso-{program}", f"adaptiso-{name}")
+    return "; " + answer.replace("adaptiso-", "adaptiso.")
+
+
+def _checks_names(subject: str, function: _Function, positional: List[str],
+                  known: List[str]) -> _Function:
+    """The function, which refuses arguments that it has not by one hint."""
+    options = known[len(positional):]
+
+    @functools.wraps(function)
+    def checking(*arguments: Any, **given: Any) -> Any:
+        for name in given:
+            if name not in known:
+                raise TypeError(f"{function.__name__}() got an unexpected keyword argument '{name}'"
+                                + _advice(subject, name, known))
+        if len(arguments) > len(positional):
+            own = [name for name in positional if name != "self"]
+            raise TypeError(f"{function.__name__}() takes {', '.join(own) or 'nothing'} by position; "
+                            f"give the others by name: {'=, '.join(options[:4])}=, ...")
+        return function(*arguments, **given)
+
+    return cast(_Function, checking)
 
 
 def takes(subject: str, only: Optional[List[str]] = None) -> Callable[[_Function], _Function]:
@@ -109,20 +161,21 @@ def takes(subject: str, only: Optional[List[str]] = None) -> Callable[[_Function
         text = "\n".join(_documented(name, row) for name, row in known.items())
         function.__doc__ = (function.__doc__ or "").replace(
             "    **options\n", textwrap.indent(text, "    ") + "\n")
-        return function
+        return _checks_names(subject, function, [each.name for each in positional],
+                             list(inspect.signature(function).parameters))
     return decorate
 
 
 def type_text() -> str:
     """The text of _option_types.py."""
     lines = ['"""Generated from the library\'s rows of options: types of keyword arguments. Do not edit."""',
-             "", "from typing import Literal, Optional, TypedDict"]
+             "", "from typing import Literal, Optional, Tuple, TypedDict, Union"]
     for subject in _ROWS:
         name = subject.title().replace("_", "")
         lines += ["", "", f"class {name}Options(TypedDict, total=False):"]
         for name, row in rows(subject).items():
             words = row.get("words")
             kind = f"Literal[{', '.join(json.dumps(each) for each in words)}]" if words else \
-                _TYPES[row["kind"]]
+                "Union[str, Tuple[slice, slice, slice]]" if name in _SLICED else _TYPES[row["kind"]]
             lines.append(f"    {name}: Optional[{kind}]")
     return "\n".join(lines) + "\n"

@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, progress as checked_progress, shown,
-                         threads as checked_threads)
+from ._arguments import Progress, shown
 from ._mesh import Mesh, mesh_data_of, stated_frames
-from ._options import checked, takes
+from ._options import takes
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -74,10 +72,6 @@ def simplify(mesh: Any, faces: Any = None, *, input_coordinates: Optional[str] =
     if faces is not None and np.ndim(faces) == 0:
         raise Error(f"faces {shown(faces)}: must be a table of integers"
                     + (f"; max_error={faces}?" if isinstance(faces, (int, float)) else ""))
-    if all(options.get(aim) is None for aim in ("max_error", "triangles", "reduction")):
-        raise Error("simplify: one of max_error, triangles and reduction must be given")
     given = mesh if faces is None else (mesh, faces)
     data = mesh_data_of(given, False, *stated_frames(input_coordinates, [given]))
-    made, found = _adaptiso.simplify_mesh(
-        data, checked("simplify", options), checked_threads(threads), checked_progress(progress))
-    return Mesh._of(made, found)
+    return Mesh._of(data).simplify(threads=threads, progress=progress, **options)

@@ -8,7 +8,7 @@ from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, Warned, number, progress as checked_progress, shown,
                          threads as checked_threads)
-from ._images import Samples, keep_read_only, prepared, read_only, samples_of
+from ._images import (Samples, keep_read_only, prepared, read_only, samples_of, stated_affine)
 from ._mesh import Mesh, logger
 from ._options import checked, rows, takes
 
@@ -18,9 +18,14 @@ if TYPE_CHECKING:
     from ._option_types import SurfaceOptions
 
 
+#: Options of `surface` that an index was built with, or without.
+_OF_IMAGES = ("border", "crop", "smooth", "resample", "interpolation")
+
+
 @takes("surface")
-def surface(image: Any, level: Union[float, str], *, affine: Any = None, threads: int = 0,
-            progress: Optional[Progress] = None, **options: Unpack[SurfaceOptions]) -> Mesh:
+def surface(image: Any, level: Union[float, str], *, affine: Any = None, spacing: Any = None,
+            threads: int = 0, progress: Optional[Progress] = None,
+            **options: Unpack[SurfaceOptions]) -> Mesh:
     """Make the isosurface of an image: a closed, oriented mesh with few triangles where it is flat.
 
     The same samples, affine and options give the bytes that the program adaptiso-mesh gives, for
@@ -40,6 +45,8 @@ def surface(image: Any, level: Union[float, str], *, affine: Any = None, threads
     affine : array_like of shape (4, 4), optional
         Takes voxel indices to scanner RAS mm, as nibabel's; may mirror and shear. Default: the
         image's own; of an array the identity, so that vertices are voxel indices.
+    spacing : three floats, optional
+        Of an array, in place of `affine`: mm between its voxels along i, j, k; the first lies at 0.
     threads : int
         0: as many as the machine has.
     progress : callable, optional
@@ -67,9 +74,12 @@ def surface(image: Any, level: Union[float, str], *, affine: Any = None, threads
     >>> round(float(np.linalg.norm(mesh.vertices - 15.5, axis=1).mean()), 1)
     10.0
     """
-    samples = samples_of(image, affine)
+    given = checked("surface", options)
+    # crop counts along the axes as they are given, and the program smooths along i first
+    samples = samples_of(image, stated_affine(affine, spacing),
+                         in_file_order=any(name in given for name in _OF_IMAGES[1:]))
     with read_only(samples.user):
-        return _make(samples, None, level, checked("surface", options), threads, progress)
+        return _make(samples, None, level, given, threads, progress)
 
 
 class Index:
@@ -78,7 +88,7 @@ class Index:
 
     Parameters
     ----------
-    image, affine, border, threads
+    image, affine, spacing, border, threads
         As for `surface`. An array stays read-only as long as the index lives.
 
     Examples
@@ -89,10 +99,11 @@ class Index:
     [True, True]
     """
 
-    def __init__(self, image: Any, *, affine: Any = None, border: str = "closed",
-                 threads: int = 0) -> None:
+    def __init__(self, image: Any, *, affine: Any = None, spacing: Any = None,
+                 border: str = "closed", threads: int = 0) -> None:
         options = checked("surface", {"border": border})
-        self._build(samples_of(image, affine), options, checked_threads(threads))
+        self._build(samples_of(image, stated_affine(affine, spacing)), options,
+                    checked_threads(threads))
 
     def _build(self, samples: Samples, options: Dict[str, Any], threads: int) -> None:
         keep_read_only(samples.user, self)
@@ -100,12 +111,10 @@ class Index:
         self._index = _adaptiso.build_index(samples.volume, options, threads)
         self._options = options
 
-    @takes("surface", [name for name in rows("surface") if name != "border"])
+    @takes("surface", [name for name in rows("surface") if name not in _OF_IMAGES])
     def surface(self, level: Union[float, str], *, threads: int = 0,
                 progress: Optional[Progress] = None, **options: Unpack[SurfaceOptions]) -> Mesh:
         """The surface at a level: as `adaptiso.surface` makes it."""
-        if "border" in options:
-            raise TypeError("surface() got an unexpected keyword argument 'border'")
         return _make(self._samples, self._index, level, checked("surface", options), threads,
                      progress)
 

@@ -39,6 +39,20 @@ class Triangles(Generic[Data]):
         """int64, shape (m, 3), rows of `vertices`: a read-only view of the object's own memory."""
         return self._data.faces
 
+    @property
+    def points(self) -> Vertices:
+        """`vertices`, by PyVista's name."""
+        return self._data.vertices
+
+    @property
+    def bounds(self) -> Vertices:
+        """float64, shape (2, 3): the least and the largest coordinates of `vertices`, in their unit
+        and frame, as trimesh has them (PyVista: ``mesh.bounds.T.ravel()``). NaN without vertices."""
+        points = self._data.vertices
+        if len(points) == 0:
+            return np.full((2, 3), np.nan)
+        return np.array([points.min(axis=0), points.max(axis=0)])
+
     def _save(self, name: str, frame: Optional[str]) -> None:
         """\\raises Error"""
         if frame is not None:

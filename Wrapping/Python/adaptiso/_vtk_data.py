@@ -10,6 +10,25 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 
+def show(data: Any) -> None:
+    """Opens a window with a vtkPolyData; returns when it is closed."""
+    import vtkmodules.vtkInteractionStyle
+    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
+    from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer,
+                                             vtkRenderWindow, vtkRenderWindowInteractor)
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    renderer = vtkRenderer()
+    renderer.AddActor(actor)
+    window = vtkRenderWindow()
+    window.AddRenderer(renderer)
+    interactor = vtkRenderWindowInteractor()
+    interactor.SetRenderWindow(window)
+    interactor.Start()
+
+
 def fill(output: Any, meshes: List[Any], turn: Any, with_normals: bool) -> None:
     """Puts meshes into a vtkPolyData, one behind the other. \\param turn  signs of x, y, z, or None"""
     def joined(parts: List[Any], dtype: Any) -> Any:

@@ -58,31 +58,41 @@ void requireCountable(const ImageGeometry& geometry) {
 
 }  // namespace
 
-ImageGeometry geometryFromAffine(const Index3& size, const py::array_t<double>& affine) {
-    if (affine.ndim() != 2 || affine.shape(0) != 4 || affine.shape(1) != 4) {
-        throw InvalidInput("affine: must be a 4 x 4 matrix of voxel indices to mm (RAS)");
+AffineTransform transformOf(const py::array_t<double>& matrix, const std::string& name) {
+    if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4) {
+        throw InvalidInput(name + ": must be a 4 x 4 matrix");
     }
-    const auto m = affine.unchecked<2>();
+    const auto m = matrix.unchecked<2>();
     for (int row = 0; row < 4; ++row) {
         for (int column = 0; column < 4; ++column) {
-            if (!std::isfinite(m(row, column))) throw InvalidInput("affine: is not finite");
+            if (!std::isfinite(m(row, column))) throw InvalidInput(name + ": is not finite");
         }
     }
     if (m(3, 0) != 0 || m(3, 1) != 0 || m(3, 2) != 0 || m(3, 3) != 1) {
-        throw InvalidInput("affine: its last row must be 0, 0, 0, 1");
+        throw InvalidInput(name + ": its last row must be 0, 0, 0, 1");
     }
+    AffineTransform transform;
+    for (int row = 0; row < 3; ++row) {
+        for (int axis = 0; axis < 3; ++axis) transform.linear.column[axis][row] = m(row, axis);
+        transform.offset[row] = m(row, 3);
+    }
+    const double volume = std::abs(determinant(transform.linear));
+    if (!(volume > 0) || !std::isfinite(volume)) {
+        throw InvalidInput(name + ": is singular; its axes span no volume");
+    }
+    return transform;
+}
+
+ImageGeometry geometryFromAffine(const Index3& size, const py::array_t<double>& affine) {
+    const AffineTransform toRas = transformOf(affine, "affine");
     ImageGeometry geometry;
     geometry.size = size;
     for (int row = 0; row < 3; ++row) {
         const auto lps = [&](double value) { return row < 2 ? turned(value) : value; };
         for (int axis = 0; axis < 3; ++axis) {
-            geometry.indexToPhysical.column[axis][row] = lps(m(row, axis));
+            geometry.indexToPhysical.column[axis][row] = lps(toRas.linear.column[axis][row]);
         }
-        geometry.originMm[row] = lps(m(row, 3));
-    }
-    const double volume = std::abs(determinant(geometry.indexToPhysical));
-    if (!(volume > 0) || !std::isfinite(volume)) {
-        throw InvalidInput("affine: is singular; its axes span no volume");
+        geometry.originMm[row] = lps(toRas.offset[row]);
     }
     requireCountable(geometry);
     return geometry;

@@ -13,10 +13,15 @@
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso::python {
 
 namespace py = pybind11;
+
+/// p -> matrix * p. \param matrix  4 x 4 floats \param name  of it, in refusals
+/// \throws InvalidInput  not finite, not affine, singular
+AffineTransform transformOf(const py::array_t<double>& matrix, const std::string& name);
 
 /// The geometry that a matrix of voxel indices to scanner RAS mm gives, as nibabel's affine is.
 /// \param affine  4 x 4 floats  \throws InvalidInput  not finite, not affine, singular

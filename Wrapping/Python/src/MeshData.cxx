@@ -21,9 +21,9 @@
 #include "adaptiso/Json/Json.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/Report/Page.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
-#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::python {
 
@@ -49,7 +49,8 @@ void turnXY(TriangleMesh& mesh) {
 }
 
 Json originJson(const SurfaceHistory& history, const ImageGeometry& image) {
-    const ImageOrigin& origin = history.origin;
+    ImageOrigin origin = history.origin;
+    addWarnings(origin.warnings, history.preprocessingWarnings);
     Json json{{"file", origin.file.empty() ? Json(nullptr) : Json(origin.file)}};
     json.update(imageJson(origin.format, image, history.pixelType, history.range, origin.warnings));
     return json;
@@ -80,6 +81,7 @@ std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) 
     std::vector<Warning> warnings;
     const std::string file = history.origin.file.empty() ? "the image" : history.origin.file;
     addWarnings(warnings, history.origin.warnings, file);
+    addWarnings(warnings, history.preprocessingWarnings, file);
     addWarnings(warnings, history.warnings, file);
     const Json report{
         {"schema", "adaptiso-mesh/1"},
@@ -89,7 +91,8 @@ std::string reportOf(const SurfaceHistory& history, const ImageGeometry& image) 
         {"error", nullptr},
         {"warnings", warnings},
         {"input", originJson(history, image)},
-        {"preprocessing", nullptr},
+        {"preprocessing",
+         preprocessedJson(history.preprocessing, image.size, history.preprocessed)},
         {"options", optionsJson(history)},
         {"index",
          {{"search", toString(history.index.search)}, {"memoryBytes", history.indexBytes}}},
@@ -146,7 +149,9 @@ std::shared_ptr<MeshData> MeshData::fromLps(TriangleMesh mesh, std::optional<Ima
     data->history_ = std::move(history);
     if (data->history_) {
         data->errorBoundMm_ = data->history_->record.statistics.errorBoundMm;
-        data->requestedBoundMm_ = requestedBoundMm(data->history_->extraction, *data->image_);
+        const auto& used = data->history_->preprocessed;
+        data->requestedBoundMm_ =
+            requestedBoundMm(data->history_->extraction, used ? used->geometry : *data->image_);
     }
     return data;
 }
@@ -171,6 +176,13 @@ std::shared_ptr<MeshData> MeshData::fromArrays(
     if (!keepsFaults) requireFaultless(data->mesh_);
     data->frame_ = frame;
     data->image_ = std::move(image);
+    return data;
+}
+
+std::shared_ptr<MeshData> MeshData::moved(const AffineTransform& transform) const {
+    auto data = std::make_shared<MeshData>(asStored(transformed(mesh_, transform), frame_));
+    data->setFrameKnown(isFrameKnown_);
+    requireFaultless(data->mesh_);
     return data;
 }
 
@@ -271,6 +283,14 @@ std::string MeshData::notebook(const std::string& title) const {
         std::find_if(pictures.begin(), pictures.end(),
                      [](const Picture& picture) { return picture.name == "surface-1.png"; });
     return notebookHtml(report, sixSides == pictures.end() ? Picture{} : *sixSides);
+}
+
+void MeshData::draw(const std::string& path) const {
+    Report report;
+    report.surfaces.push_back({"surface", lps()});
+    AtomicOutput output(path);
+    output.writeText(drawViews(report, {.width = 1200, .height = 900}).front().png);
+    AtomicOutput::commit({&output, 1});
 }
 
 std::pair<std::shared_ptr<MeshData>, std::vector<Warning>> readMeshData(
@@ -415,6 +435,25 @@ void declareMeshes(py::module_& module) {
                 return html;
             },
             py::arg("title"))
+        .def(
+            "moved",
+            [](const MeshData& self, const py::array_t<double>& matrix) {
+                return self.moved(transformOf(matrix, "matrix"));
+            },
+            py::arg("matrix"))
+        .def(
+            "draw",
+            [](const MeshData& self, const std::string& path) {
+                runUnlocked(0, [&] { self.draw(path); });
+            },
+            py::arg("path"))
+        .def_property_readonly(
+            "is_watertight",
+            [](const MeshData& self) {
+                bool isWatertight = false;
+                runUnlocked(0, [&] { isWatertight = checkTopology(self.mesh()).isWatertight(); });
+                return isWatertight;
+            })
         .def_property_readonly("area",
                                [](const MeshData& self) { return surfaceArea(self.mesh()); })
         .def_property_readonly("volume",

@@ -18,6 +18,7 @@
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
+#include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::python {
 
@@ -40,10 +41,16 @@ struct SurfaceHistory {
     ImageOrigin origin;
     PixelType pixelType{};
     ValueRange range{};
+    PreprocessOptions preprocessing;
+    std::optional<PreprocessedImage> preprocessed;
+    std::vector<Warning> preprocessingWarnings;
     std::vector<Warning> warnings;  ///< of the surface
     int threads = 0;
     std::vector<std::pair<std::string, double>> seconds;
     double peakMemoryMb = 0;
+
+    /// Of the values that the surface is made from.
+    const ValueRange& workingRange() const { return preprocessed ? preprocessed->range : range; }
 };
 
 /// LPS to RAS and back.
@@ -92,12 +99,20 @@ public:
     std::string report();
     /// Of the surface that was made from an image.
     std::vector<Warning> surfaceWarnings() const {
-        return history_ ? history_->warnings : std::vector<Warning>{};
+        std::vector<Warning> all;
+        if (!history_) return all;
+        addWarnings(all, history_->preprocessingWarnings);
+        addWarnings(all, history_->warnings);
+        return all;
     }
     void setReport(std::string report) { report_ = std::move(report); }
 
     /// The bound that the mesh was asked to keep, mm; none: none, or not known.
     void setRequestedBoundMm(std::optional<double> bound) { requestedBoundMm_ = bound; }
+
+    /// Moved to where `transform` takes its points; the image is another's then.
+    /// \throws InvalidInput  a point goes beyond what a double holds
+    std::shared_ptr<MeshData> moved(const AffineTransform& transform) const;
 
     /// Writes a file, whole or not at all, in `frame` or in the format's own. Points of an unknown
     /// frame are written as they are, and the file says no frame.
@@ -114,6 +129,9 @@ public:
 
     /// The mesh in the viewer of report pages, for a notebook. \pre it has triangles
     std::string notebook(const std::string& title) const;
+
+    /// Draws it from the front into a PNG file, whole or not at all. \throws FileError
+    void draw(const std::string& path) const;
 
 private:
     TriangleMesh mesh_;

@@ -1,9 +1,12 @@
 #include "OptionRows.h"
 
+#include <pybind11/stl.h>
+
 #include <algorithm>
 #include <initializer_list>
 
 #include "Words.h"
+#include "adaptiso/Core/Habits.h"
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/Extraction/Mend.h"
@@ -11,6 +14,7 @@
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/Json/OptionsJson.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
 #include "adaptiso/Tetrahedra/MesherFiles.h"
 
@@ -40,7 +44,7 @@ std::string optionRows() {
     const Json border = without({"block-size", "search"}, describe(indexOptions()));
     return dumped(
         {{"surface", joined({describe(aimOptions(AimedSurface::OfScan)), describe(methodOptions()),
-                             border, describe(pieceOptions())})},
+                             border, describe(pieceOptions()), describe(preprocessOptions())})},
          {"check", without({"profile", "min-gap", "max-off"}, rules)},
          {"check_nested", without({"profile", "max-off"}, rules)},
          {"simplify",
@@ -73,6 +77,8 @@ OptionValue toOptionValue(const py::handle& value, OptionKind kind) {
 
 void declareOptions(py::module_& module) {
     module.def("option_rows", &optionRows);
+    module.def("habit_answer", &habitAnswer, py::arg("program"), py::arg("typed"),
+               py::arg("known"));
 }
 
 }  // namespace adaptiso::python

@@ -19,6 +19,7 @@
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/Files/StageTimer.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
 #include "adaptiso/SurfacePipeline/SurfaceWarnings.h"
@@ -49,6 +50,7 @@ struct SurfaceRequest {
     std::optional<double> level;  ///< empty: Otsu's method chooses
     ExtractionOptions extraction;
     ComponentSelection selection;
+    PreprocessOptions preprocessing;
     Border border = Border::Closed;
     int threads = 0;
 };
@@ -62,6 +64,10 @@ void requireUsable(const SurfaceRequest& request) {
     const ComponentSelection& pieces = request.selection;
     if (request.border == Border::Open && (pieces.fillCavities || pieces.minVolumeMm3 > 0)) {
         throw InvalidInput("min_volume and fill_cavities need closed surfaces, not border 'open'");
+    }
+    const PreprocessOptions& steps = request.preprocessing;
+    if (steps.interpolation != Interpolation::Linear && !steps.resampleMm) {
+        throw InvalidInput("interpolation: is for resample, which is not given");
     }
 }
 
@@ -93,6 +99,7 @@ SurfaceHistory historyOf(const SurfaceRequest& request, const ArrayIndex* built,
     SurfaceHistory history;
     history.extraction = request.extraction;
     history.selection = request.selection;
+    history.preprocessing = request.preprocessing;
     history.index = {.border = request.border, .search = BlockSearchKind::Linear};
     if (built != nullptr) {
         history.index = built->index.options();
@@ -102,6 +109,24 @@ SurfaceHistory historyOf(const SurfaceRequest& request, const ArrayIndex* built,
     history.origin = origin;
     history.threads = request.threads;
     return history;
+}
+
+/// The samples to make the surface of: `volume`'s where nothing is to be done.
+Preprocessed prepared(const VolumeView& volume, SurfaceHistory& history, Watcher& watcher) {
+    Preprocessed done{Volume(volume, nullptr), {}};
+    if (history.preprocessing.changesNothing()) return done;
+    watcher.tell("preprocess", 0);
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        done = preprocess(std::move(done.volume), history.preprocessing);
+    } catch (const PreprocessError& error) {
+        throw InvalidInput(optionOf(error.step(), history.preprocessing) + ": " + error.what());
+    }
+    const VolumeView& view = done.volume.view();
+    history.preprocessed = {view.geometry(), view.pixelType(), valueRange(view)};
+    addWarnings(history.preprocessingWarnings, done.warnings);
+    history.seconds.emplace_back("preprocess", secondsSince(start));
+    return done;
 }
 
 /// Calls `work`, which chooses pieces. \throws InvalidInput when nothing is left
@@ -122,7 +147,7 @@ TriangleMesh extracted(const VolumeView& volume, const ArrayIndex* built,
     const auto start = std::chrono::steady_clock::now();
     SurfaceRecord& record = history.record;
     record.isAutomatic = !request.level;
-    record.isovalue = levelOf(request, volume, history.range);
+    record.isovalue = levelOf(request, volume, history.workingRange());
     ExtractionOptions options = history.extraction;
     options.isovalue = record.isovalue;
     options.progress = watcher.callback();
@@ -157,11 +182,14 @@ TriangleMesh finished(TriangleMesh mesh, const SurfaceRequest& request, SurfaceH
         request, [&] { return finishSurface(std::move(mesh), finish, history.record).mesh; });
 }
 
-std::vector<Warning> warningsOf(const ArrayVolume& volume, const SurfaceHistory& history) {
+/// \param smoothing  as noiseWarning() takes it
+std::vector<Warning> warningsOf(const VolumeView& volume, const SurfaceHistory& history,
+                                const std::string& smoothing) {
     std::vector<Warning> warnings;
     for (const auto& warning :
-         {labelsWarning(findLabelValues(volume.view), history.record.isovalue, "adaptiso.labels()"),
-          noiseWarning(history.record, history.extraction, volume.geometry, "max_error=")}) {
+         {labelsWarning(findLabelValues(volume), history.record.isovalue, "adaptiso.labels()"),
+          noiseWarning(history.record, history.extraction, volume.geometry(),
+                       "max_error=", smoothing)}) {
         if (warning) warnings.push_back(*warning);
     }
     return warnings;
@@ -179,9 +207,11 @@ std::shared_ptr<MeshData> makeSurface(ArrayVolume& volume, const ArrayIndex* bui
     Watcher watcher(std::move(progress));
     TriangleMesh mesh;
     watcher.run(request.threads, [&] {
-        mesh = extracted(volume.view, built, request, history, watcher);
+        const Preprocessed samples = prepared(volume.view, history, watcher);
+        mesh = extracted(samples.volume, built, request, history, watcher);
         mesh = finished(std::move(mesh), request, history, watcher);
-        history.warnings = warningsOf(volume, history);
+        const bool mayBeSmoothed = built == nullptr && !history.preprocessing.smoothSigmaMm;
+        history.warnings = warningsOf(samples.volume, history, mayBeSmoothed ? "smooth=" : "");
         watcher.tell("check", 1);
     });
     history.peakMemoryMb = peakMemoryMb();
@@ -242,6 +272,7 @@ void declareSurfaces(py::module_& module) {
             take(methodOptions(), request.extraction, options);
             take(aimOptions(AimedSurface::OfScan), request.extraction.adaptive, options);
             take(pieceOptions(), request.selection, options);
+            take(preprocessOptions(), request.preprocessing, options);
             return makeSurface(volume, index.get(), request, {file, format, warnings},
                                std::move(progress));
         },

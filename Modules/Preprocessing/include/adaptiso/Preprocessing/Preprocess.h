@@ -75,10 +75,14 @@ struct PreprocessOptions {
     friend bool operator==(const PreprocessOptions&, const PreprocessOptions&) = default;
 };
 
-/// --smooth, --resample and --interpolation
-const Options<PreprocessOptions>& filterOptions();
+/// --crop, --smooth, --resample and --interpolation
+const Options<PreprocessOptions>& preprocessOptions();
 
+/// In the order of preprocessOptions().
 enum class PreprocessStep { Crop, Smooth, Resample };
+
+/// "smooth 50": the option that asks for a step, and its value.
+std::string optionOf(PreprocessStep step, const PreprocessOptions& options);
 
 /// A step that is impossible for the volume. The message gives the reason, without a function.
 class PreprocessError : public InvalidInput {

@@ -9,6 +9,7 @@
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/Json/Figures.h"
+#include "adaptiso/Preprocessing/Preprocess.h"
 #include "adaptiso/SurfacePipeline/FinishSurface.h"
 
 namespace adaptiso {
@@ -19,6 +20,21 @@ namespace adaptiso {
 /// `input` from the format on: format, geometryJson(), pixelType, minimum, maximum, warnings.
 Json imageJson(const std::string& format, const ImageGeometry& geometry, PixelType pixelType,
                const ValueRange& range, const std::vector<Warning>& warnings);
+
+/// The volume from which surfaces are made, where preprocess() changed it.
+struct PreprocessedImage {
+    ImageGeometry geometry;
+    PixelType pixelType{};
+    ValueRange range{};
+};
+
+/// How an image of this size is preprocessed: crop, smoothSigmaMm, resampleMm, interpolation; null
+/// where not asked for, and null altogether when nothing was.
+Json preprocessingJson(const PreprocessOptions& options, const Index3& size);
+
+/// `preprocessing`: the same with what came of it; null where there is no `image`.
+Json preprocessedJson(const PreprocessOptions& options, const Index3& size,
+                      const std::optional<PreprocessedImage>& image);
 
 /// `options` as far as they concern the surface.
 Json surfaceOptionsJson(const ExtractionOptions& extraction, const IndexOptions& index,

@@ -18,8 +18,10 @@ std::optional<Warning> labelsWarning(const std::optional<LabelValues>& labels, d
 
 /// "noise-kept": the default bound left a tenth of the surface or more at full resolution. Names
 /// the bound of half a voxel, within which noise of many kinds loses half of its triangles or more.
-/// \param option  that states a bound: "--max-error "
+/// \param option     that states a bound: "--max-error "
+/// \param smoothing  that smooths the image: "--smooth "; empty: it is smoothed already
 std::optional<Warning> noiseWarning(const SurfaceRecord& surface, const ExtractionOptions& options,
-                                    const ImageGeometry& volume, const std::string& option);
+                                    const ImageGeometry& volume, const std::string& option,
+                                    const std::string& smoothing);
 
 }  // namespace adaptiso

@@ -1,8 +1,7 @@
-#include "Common/Habits.h"
+#include "adaptiso/Core/Habits.h"
 
 #include <algorithm>
 
-#include "Common/Naming.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -46,8 +45,9 @@ constexpr Habit kHabits[] = {
     {"roi bbox bounding-box extent clip", "", "crop", ""},
     {"recursive", "", "list", "find FOLDER -name '*.nii.gz' lists files; --list - takes that"},
     // surfaces
-    {"threshold thresh thr t contour isovalue isolevel iso-level isosurface isosurfaces hu", "",
-     "iso", ""},
+    {"threshold thresh thr t contour isovalue iso-value isolevel iso-level isosurface isosurfaces "
+     "hu",
+     "", "iso", ""},
     {"ico", "bem", "vertices", "--vertices 2562 is ico 4, 642 ico 3, 10242 ico 5"},
     {"decimate reduce subdivision ntri npoints n-vertices triangles faces reduction", "bem",
      "vertices", ""},
@@ -58,7 +58,9 @@ constexpr Habit kHabits[] = {
      "--reduction is the share to drop: 0.9 keeps a tenth"},
     {"decimate decimation reduce reduction triangles faces", "mend compare check giant", "",
      "adaptiso-simplify makes fewer triangles"},
-    {"faces polygons tris target-faces target-count target-face-num face-count num-faces nfaces",
+    {"faces polygons tris target-faces target-count target-face-num face-count num-faces nfaces "
+     "n-triangles "
+     "target-number-of-triangles",
      "", "triangles", ""},
     {"tolerance tol error deviation accuracy max-distance", "", "max-error", ""},
     {"fwhm", "", "smooth", "--smooth takes the standard deviation: FWHM / 2.355"},
@@ -118,6 +120,8 @@ constexpr Habit kHabits[] = {
     {"screenshot png snapshot render plot figure thumbnail", "", "pictures", ""},
     {"space frame coordinate-system coords ras lps tkr", "", "coordinates", ""},
     {"unit scale", "bem", "units", ""},
+    {"bed printer build-volume", "", "fit", ""},
+    {"resize shrink", "", "scale", ""},
     {"units unit scale", "", "", "lengths are in mm, as images and surfaces have them"},
     // running
     {"j n-cpus n-jobs n-procs nproc nprocs num-workers workers parallel", "", "jobs", ""},
@@ -126,7 +130,7 @@ constexpr Habit kHabits[] = {
      "cores cpus",
      "", "threads", ""},
     {"resume continue no-clobber", "", "skip-existing", ""},
-    {"verbose debug log-level progress", "", "",
+    {"verbose debug log-level progress", "", "quiet",
      "progress and results are printed unless --quiet is given"},
     {"silent", "", "quiet", ""},
     {"gpu cuda device", "", "threads", "all work is the processor's; --threads sets its share"},
@@ -145,7 +149,8 @@ bool holdsWord(std::string_view words, std::string_view word) {
 
 std::optional<std::string> habitAnswer(std::string_view program, std::string_view typed,
                                        const std::vector<std::string>& known) {
-    const std::string word = lowerCase(replaced(std::string(typed), "_", "-"));
+    std::string word = lowerCase(typed);
+    std::ranges::replace(word, '_', '-');
     const std::string_view own = program.substr(program.find('-') + 1);
     for (const Habit& habit : kHabits) {
         const bool fits =
