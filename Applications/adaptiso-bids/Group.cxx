@@ -527,7 +527,7 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     for (const DatasetStatus::Entry& entry : status.entries) {
         rows.insert(rows.end(), entry.rows.begin(), entry.rows.end());
     }
-    markOutliers(rows, options.outlierLimit, options.outlierPercent);
+    markOutliers(rows, options.outliers);
 
     std::set<std::string> participants, faulty;
     Json missing = Json::array(), unusual = Json::array();
@@ -551,7 +551,7 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     write("README", readme.replace(readme.find(place), place.size(), programVersion()));
     write(".bidsignore", kIgnored);
     write("quality.tsv", qualityTable(rows));
-    write("quality.json", dumped(qualityDictionary(options.outlierLimit, options.outlierPercent)));
+    write("quality.json", dumped(qualityDictionary(options.outliers)));
     write("summary.html",
           summaryPage(pageRows(status.entries, rows), options.output / "summary.html"));
     Verdict verdict{missing.empty() ? kExitOk : kExitCheckFailed};
