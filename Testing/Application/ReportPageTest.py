@@ -121,6 +121,8 @@ class Contents(ReportTest):
         point = "(" + ", ".join(f"{v:.1f}" for v in middle) + ")"
         self.assertRegex(page.text(), r"hole of \d+ edges, [\d.]+ mm round, in open\.off\s+"
                          + re.escape(point))
+        # and in the text at the same place
+        self.assertIn("around " + ", ".join(f"{v:.2f}" for v in middle), page.text())
 
     def test_points_of_another_frame_are_said_to_be(self):
         self.mesh("ball.nii", "--iso", "100", "--quiet", "-o", "lps.off", "--coordinates", "lps")
