@@ -89,6 +89,7 @@ struct BatchRunning {
     std::filesystem::path summary{};  ///< a page to write; may be empty
     /// For the page, as AtomicOutput takes it.
     std::filesystem::path summaryFolder{};
+    std::string command{};             ///< that makes the page again; may be empty
     std::string* jsonLines = nullptr;  ///< takes the lines of --json FILE
 };
 

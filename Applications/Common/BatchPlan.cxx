@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <span>
 #include <string_view>
 #include <thread>
 
@@ -71,45 +72,36 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
     }
 }
 
-/// The error of a failed run without file and remedy, and with N for numbers, so that those of a
-/// kind are alike.
-std::string reasonOf(const RunRecord& record) {
-    std::string text = record.error.empty() ? record.says : record.error;
-    for (const std::string& file : record.files) {
-        if (text.starts_with(file + ": ")) text.erase(0, file.size() + 2);
-    }
-    text.resize(std::min(text.find("; "), text.size()));
-    std::string kind;
-    for (std::size_t n = 0; n < text.size(); ++n) {
-        const bool begins = n == 0 || text[n - 1] == ' ' || text[n - 1] == '(';
-        const std::size_t end = std::min(text.find_first_not_of("0123456789.,-+", n), text.size());
-        const bool isNumber =
-            begins && text.find_first_of("0123456789", n) < end && (text[end - 1] != '.');
-        kind += isNumber ? 'N' : text[n];
-        if (isNumber) n = end - 1;
-    }
-    return kind;
-}
-
-/// "2 failed: holds no label: a.nii, b.nii", most first.
-void printGroups(const std::map<std::string, std::vector<std::string>>& groups,
-                 const std::string& words) {
+/// "2 failed: holds no label: a.nii, b.nii".
+void printReasons(std::span<const SummaryReason> reasons, const std::string& words) {
     constexpr std::size_t kMostGroups = 6, kMostNames = 4;
-    std::vector<std::pair<std::string, std::vector<std::string>>> sorted(groups.begin(),
-                                                                         groups.end());
-    std::ranges::stable_sort(
-        sorted, [](const auto& a, const auto& b) { return a.second.size() > b.second.size(); });
-    for (std::size_t n = 0; n < std::min(kMostGroups, sorted.size()); ++n) {
-        auto& [reason, names] = sorted[n];
+    for (std::size_t n = 0; n < std::min(kMostGroups, reasons.size()); ++n) {
+        std::vector<std::string> names = reasons[n].names;
         const std::size_t count = names.size();
         if (count > kMostNames) names.resize(kMostNames);
-        std::cout << oneLine("  " + std::to_string(count) + " " + words + " " + reason + ": " +
-                             joined(names) + (count > kMostNames ? ", ..." : ""))
+        std::cout << oneLine("  " + std::to_string(count) + " " + words + " " + reasons[n].reason +
+                             ": " + joined(names) + (count > kMostNames ? ", ..." : ""))
                   << '\n';
     }
-    if (sorted.size() > kMostGroups) {
-        std::cout << "  and " << sorted.size() - kMostGroups << " more kinds\n";
+    if (reasons.size() > kMostGroups) {
+        std::cout << "  and " << reasons.size() - kMostGroups << " more kinds\n";
     }
+}
+
+/// The command that makes the page again, without folders, which may name a patient.
+std::string commandOf(const BatchProgram& program, const BatchOptions& batch) {
+    std::string words = program.name;
+    const auto add = [&](const char* option, const fs::path& path) {
+        if (!path.empty()) words += std::string(" ") + option + " " + shellQuoted(baseName(path));
+    };
+    if (batch.list.empty()) words += " INPUT...";
+    add("--list", batch.list);
+    for (const std::string& option : batch.runOptions) {
+        words += " " + shellQuoted(withoutFolders(option));
+    }
+    add("--output-dir", batch.outputFolder);
+    add("--summary", batch.summary);
+    return words + (program.keepsRecords || !batch.outputFolder.empty() ? " --skip-existing" : "");
 }
 
 }  // namespace
@@ -220,23 +212,18 @@ std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchI
 
 void printTotals(const std::vector<RunRecord>& records, const std::string& thing,
                  const fs::path& written, const std::vector<std::string>& toDo) {
-    std::map<std::string, std::vector<std::string>> failures, warnings;
-    for (const RunRecord& record : records) {
-        const std::string name = joined(record.files);
-        if (!record.hasPassed()) failures[reasonOf(record)].push_back(name);
-        std::set<std::string> codes;
-        for (const Warning& warning : record.warnings) {
-            if (!isNote(warning)) codes.insert(warning.code);
-        }
-        for (const std::string& code : codes) warnings[code].push_back(name);
-    }
+    std::vector<SummaryRow> rows;
+    for (const RunRecord& record : records) rows.push_back(recordRow(record));
+    const std::vector<SummaryReason> reasons = reasonsOf(rows);
+    const auto warnings =
+        std::ranges::find_if(reasons, std::mem_fn(&SummaryReason::isWarning)) - reasons.begin();
     const auto failed = std::ranges::count_if(records, std::not_fn(&RunRecord::hasPassed));
     const auto before = std::ranges::count_if(records, std::mem_fn(&RunRecord::isOfEarlierRun));
     std::cout << counted(std::ssize(records), thing) << ", " << failed << " failed";
     if (before > 0) std::cout << ", " << before << " of an earlier run";
     std::cout << '\n';
-    printGroups(failures, "failed:");
-    printGroups(warnings, "with the warning");
+    printReasons({reasons.begin(), reasons.begin() + warnings}, "failed:");
+    printReasons({reasons.begin() + warnings, reasons.end()}, "with the warning");
     std::string line = written.empty() ? "" : "Wrote " + written.string();
     if (!toDo.empty()) line += (line.empty() ? "Next: " : "; next: ") + joined(toDo, "; ");
     if (!line.empty()) std::cout << oneLine(line) << '\n';
@@ -246,6 +233,7 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
              const CommonOptions& common) {
     checkOptions(program, batch);
     BatchRunning running{batch.outputFolder, batch.summary};
+    running.command = commandOf(program, batch);
     const std::vector<PlannedRun> runs = planRuns(program, std::move(items), batch, common);
     if (!running.folder.empty()) makeFolders(running.folder);
     if (running.summary.empty() && !running.folder.empty()) {

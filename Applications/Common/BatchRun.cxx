@@ -297,7 +297,6 @@ private:
                 add(kOutputOption, name);
             }
         }
-        if (!record.isFinished()) return;
         for (const auto& [option, path] : run.extras) {
             for (const fs::path& file : filesOfInput(path, {})) {
                 if (!fs::exists(file)) continue;
@@ -373,7 +372,10 @@ private:
             if (!ended_[n]) own.emplace(runs_[n].record, newRecord(n));
             if (ended_[n] && !keepsRecord(n)) own.emplace(runs_[n].record, *ended_[n]);
         }
-        writeSummary(running_.summary, running_.folder, own, running_.summaryFolder);
+        Summary summary{.program = program_.name + " " + programVersion(),
+                        .command = running_.command};
+        writeSummary(running_.summary, running_.folder, own, running_.summaryFolder,
+                     std::move(summary));
     }
 
     using Clock = std::chrono::steady_clock;

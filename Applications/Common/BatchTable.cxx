@@ -19,7 +19,8 @@ std::string cellText(const Json& value) {
     return value.is_string() ? value.get<std::string>() : value.is_null() ? "" : value.dump();
 }
 
-/// The surfaces or regions that a report lists, or its one output.
+}  // namespace
+
 Json surfacesOf(const RunRecord& record) {
     for (const char* const key : {"surfaces", "regions", "output"}) {
         if (!record.report.is_object() || !record.report.contains(key)) continue;
@@ -28,8 +29,6 @@ Json surfacesOf(const RunRecord& record) {
     }
     return Json::array();
 }
-
-}  // namespace
 
 std::string batchTable(const std::vector<RunRecord>& records) {
     std::vector<std::string> columns;

@@ -292,7 +292,8 @@ void SpotClusters::add(const Vec3& p) {
 }
 
 void SpotClusters::tell(const std::string& what, bool isFailure, std::vector<ReportSpot>& spots) {
-    std::stable_sort(clusters_.begin(), clusters_.end(),
+    if (clusters_.empty()) return;
+    std::stable_sort(clusters_.begin() + 1, clusters_.end(),
                      [](const auto& a, const auto& b) { return a.second > b.second; });
     for (std::size_t n = 0; n < std::min(clusters_.size(), kMostSpotsOfAKind); ++n) {
         const auto& [middle, count] = clusters_[n];

@@ -86,7 +86,8 @@ public:
     /// A defect at `p`; one that is not finite is left out.
     void add(const Vec3& p);
 
-    /// Adds the places to `spots`, that with the most defects first.
+    /// Adds the places to `spots`: first that of the first defect, which texts name, then that with
+    /// the most defects.
     /// \param what  "crossing triangles in a.stl"
     void tell(const std::string& what, bool isFailure, std::vector<ReportSpot>& spots);
 

@@ -214,6 +214,7 @@ private:
         for (const QualityRow& each : entry.rows) {
             if (each.state == QualityState::Done) continue;
             entry.line.says = each.reason;
+            entry.line.reason = reasonOf(each.reason, record.files);
             entry.line.state = !record.hasEnded                      ? RunState::NotFinished
                                : each.state == QualityState::Missing ? RunState::Changed
                                                                      : RunState::Failed;
@@ -246,6 +247,7 @@ private:
         line.name = row.scan.empty() ? row.participant : row.scan;
         line.state = state == QualityState::Leftover ? RunState::Changed : RunState::NotRun;
         line.says = reason;
+        line.reason = reasonOf(reason);
         entries.push_back({std::move(line), {std::move(row)}});
     }
 
@@ -386,6 +388,20 @@ std::string wordsOf(const BidsOptions& options) {
     return words;
 }
 
+/// The group level's command, without folders, which may name a patient.
+std::string commandOf(const BidsOptions& options, bool areFromRecords) {
+    std::string words = std::string(kProgram) + " BIDS_DIR OUT_DIR group";
+    for (const std::string& label : options.participants) words += " --participant-label " + label;
+    for (const std::string& label : options.sessions) words += " --session-label " + label;
+    if (!areFromRecords) words += " " + withoutFolders(wordsOf(options));
+    const OutlierRule &rule = options.outliers, usual;
+    if (rule.limit != usual.limit) words += " --outlier " + formatNumber(rule.limit);
+    if (rule.leastPercent != usual.leastPercent) {
+        words += " --outlier-percent " + formatNumber(rule.leastPercent);
+    }
+    return words;
+}
+
 /// The first entry of GeneratedBy in the output's description; may be null.
 Json makerOf(const fs::path& output) {
     const auto json = parseJson<Json>(readFoundFile(output / kDescription, output).value_or(""));
@@ -479,7 +495,11 @@ std::vector<SummaryRow> pageRows(const std::vector<DatasetStatus::Entry>& entrie
     auto row = rows.begin();
     for (const DatasetStatus::Entry& entry : entries) {
         SummaryRow& line = lines.emplace_back(entry.line);
+        line.volumesMm3.clear();
         for (const auto end = row + std::ssize(entry.rows); row != end; ++row) {
+            if (const auto volume = row->measures[static_cast<std::size_t>(Measure::VolumeMm3)]) {
+                line.volumesMm3.emplace_back(row->name.empty() ? row->part : row->name, *volume);
+            }
             if (row->outliers.empty()) continue;
             if (line.state == RunState::Done) line.state = RunState::Unusual;
             addPart(line.says,
@@ -527,7 +547,7 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     for (const DatasetStatus::Entry& entry : status.entries) {
         rows.insert(rows.end(), entry.rows.begin(), entry.rows.end());
     }
-    markOutliers(rows, options.outlierLimit, options.outlierPercent);
+    markOutliers(rows, options.outliers);
 
     std::set<std::string> participants, faulty;
     Json missing = Json::array(), unusual = Json::array();
@@ -551,9 +571,13 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     write("README", readme.replace(readme.find(place), place.size(), programVersion()));
     write(".bidsignore", kIgnored);
     write("quality.tsv", qualityTable(rows));
-    write("quality.json", dumped(qualityDictionary(options.outlierLimit, options.outlierPercent)));
-    write("summary.html",
-          summaryPage(pageRows(status.entries, rows), options.output / "summary.html"));
+    write("quality.json", dumped(qualityDictionary(options.outliers)));
+    Summary summary{pageRows(status.entries, rows)};
+    summary.title = "Group of " + counted(std::ssize(participants), "participant");
+    summary.program = std::string(kProgram) + " " + programVersion();
+    summary.command = commandOf(options, areFromRecords);
+    summary.outliers = options.outliers;
+    write("summary.html", summaryPage(summary, options.output / "summary.html"));
     Verdict verdict{missing.empty() ? kExitOk : kExitCheckFailed};
     if (missing.empty()) verdict.failStrict(common, chosen.warnings, "");
     std::string json;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Common/CommonOptions.h"
+#include "adaptiso/Core/Outliers.h"
 
 namespace adaptiso::bids {
 
@@ -32,8 +33,7 @@ struct BidsOptions {
     bool makes(const std::string& product) const { return wanted.contains(product); }
     bool namesProducts() const { return wanted.size() > (makes("check") ? 1 : 0); }
 
-    double outlierLimit = 3.5;  ///< robust standard deviations
-    double outlierPercent = 1;  ///< of the median, at least
+    OutlierRule outliers;
     std::optional<int> jobs;
     CommonOptions common;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -40,28 +39,6 @@ std::string cell(const std::optional<double>& value) {
     return value && std::isfinite(*value) ? formatNumber(*value) : "n/a";
 }
 
-/// Two digits: "31%", "0.52%", "12000%"; of what is infinite "inf%".
-std::string percentText(double percent) {
-    const double size = std::abs(percent);
-    if (!std::isfinite(size)) return "inf%";
-    return (size < 10 ? formatShort(std::round(size * 100) / 100) : formatFixed(size, 0)) + "%";
-}
-
-/// \pre values is not empty
-double medianOf(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
-
-std::vector<double> knownOf(std::span<const std::optional<double>> values) {
-    std::vector<double> known;
-    for (const std::optional<double>& value : values) {
-        if (value && std::isfinite(*value)) known.push_back(*value);
-    }
-    return known;
-}
-
 Json described(std::string_view text) {
     return {{"Description", text}};
 }
@@ -73,7 +50,7 @@ std::string toString(QualityState state) {
     return kNames[static_cast<std::size_t>(state)];
 }
 
-void markOutliers(std::vector<QualityRow>& rows, double limit, double leastPercent) {
+void markOutliers(std::vector<QualityRow>& rows, const OutlierRule& rule) {
     std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> alike;
     for (std::size_t n = 0; n < rows.size(); ++n) {
         alike[{rows[n].product, rows[n].part}].push_back(n);
@@ -83,17 +60,10 @@ void markOutliers(std::vector<QualityRow>& rows, double limit, double leastPerce
             if (!kColumns[k].isCompared) continue;
             std::vector<std::optional<double>> values;
             for (const std::size_t n : members) values.push_back(rows[n].measures[k]);
-            const std::vector<std::optional<double>> scores = robustScores(values);
-            const double median = medianOf(values);
-            for (std::size_t m = 0; m < members.size(); ++m) {
-                if (!scores[m] || !(std::abs(*scores[m]) > limit)) continue;
-                const double percent = 100 * (*values[m] - median) / std::abs(median);
-                if (std::abs(percent) < leastPercent) continue;
-                std::string& marks = rows[members[m]].outliers;
-                addPart(marks,
-                        std::string(kColumns[k].name) + (*scores[m] > 0 ? ":+" : ":-") +
-                            formatFixed(std::abs(*scores[m]), 1) + (percent > 0 ? "(+" : "(-") +
-                            percentText(percent) + ")",
+            for (const Outlier& found : findOutliers(values, rule)) {
+                addPart(rows[members[found.index]].outliers,
+                        std::string(kColumns[k].name) + (found.score > 0 ? ":+" : ":-") +
+                            formatFixed(std::abs(found.score), 1) + "(" + found.percentText() + ")",
                         ",");
             }
         }
@@ -117,7 +87,7 @@ std::string qualityTable(const std::vector<QualityRow>& rows) {
     return text;
 }
 
-Json qualityDictionary(double limit, double leastPercent) {
+Json qualityDictionary(const OutlierRule& rule) {
     Json json{{"participant_id", described("Participant")},
               {"session_id", described("Session")},
               {"scan", described("Entities of the image that the surface was made of")},
@@ -126,13 +96,9 @@ Json qualityDictionary(double limit, double leastPercent) {
               {"name", described("Name of the region")},
               {"reason", described("Why the surface is not there, or what is wrong with it")},
               {"check", described("What adaptiso-check found: passed, or what does not hold")},
-              {"outliers",
-               described("Columns in which this surface lies more than " + formatNumber(limit) +
-                         " robust standard deviations (1.4826 times the median distance from "
-                         "the median) and at least " +
-                         formatNumber(leastPercent) +
-                         " % from the median of all rows of its product and part, each "
-                         "with that distance: volume_mm3:+4.2(+31%) is far above it")}};
+              {"outliers", described("Columns in which this surface lies " + rule.text() +
+                                     " of all rows of its product and part, each "
+                                     "with that distance: volume_mm3:+4.2(+31%) is far above it")}};
     json["product"] = described("What was made");
     json["product"]["Levels"] = {{"surfaces", "An isosurface, by adaptiso-mesh"},
                                  {"bem", "A surface of a head model, by adaptiso-bem"},
@@ -149,34 +115,6 @@ Json qualityDictionary(double limit, double leastPercent) {
         if (!column.units.empty()) one["Units"] = column.units;
     }
     return json;
-}
-
-double medianOf(std::span<const std::optional<double>> values) {
-    std::vector<double> known = knownOf(values);
-    return known.empty() ? std::nan("") : medianOf(std::move(known));
-}
-
-std::vector<std::optional<double>> robustScores(std::span<const std::optional<double>> values) {
-    constexpr std::size_t kFewest = 5;          // of four, one is no exception
-    constexpr double kOfNormal = 1.4826;        // MAD of a normal distribution is 1 / this
-    constexpr double kOfNormalMean = 1.253314;  // its mean distance is 1 / this: sqrt(pi / 2)
-    std::vector<std::optional<double>> scores(values.size());
-    const std::vector<double> known = knownOf(values);
-    if (known.size() < kFewest) return scores;
-    const double median = medianOf(known);
-    std::vector<double> distances;
-    for (const double value : known) distances.push_back(std::abs(value - median));
-    double scale = kOfNormal * medianOf(distances);
-    if (!(scale > 0)) {
-        std::sort(distances.begin(), distances.end());  // one sum, whatever the order
-        scale = kOfNormalMean * std::accumulate(distances.begin(), distances.end(), 0.0) /
-                static_cast<double>(distances.size());
-    }
-    if (!(scale > 0)) return scores;
-    for (std::size_t n = 0; n < values.size(); ++n) {
-        if (values[n] && std::isfinite(*values[n])) scores[n] = (*values[n] - median) / scale;
-    }
-    return scores;
 }
 
 }  // namespace adaptiso::bids

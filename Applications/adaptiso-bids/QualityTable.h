@@ -3,11 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "Common/Json.h"
+#include "adaptiso/Core/Outliers.h"
 
 namespace adaptiso::bids {
 
@@ -51,24 +51,10 @@ struct QualityRow {
 };
 
 /// Fills `outliers` by comparing each row with those of its product and part.
-/// \param limit         robust standard deviations from the median
-/// \param leastPercent  of the median; nearer values are no outliers
-void markOutliers(std::vector<QualityRow>& rows, double limit, double leastPercent = 1);
+void markOutliers(std::vector<QualityRow>& rows, const OutlierRule& rule);
 
 /// quality.tsv, and quality.json, BIDS's description of its columns.
 std::string qualityTable(const std::vector<QualityRow>& rows);
-Json qualityDictionary(double limit, double leastPercent = 1);
-
-/// The median of the known values; NaN if there are none.
-double medianOf(std::span<const std::optional<double>> values);
-
-/// Returns the distance of each value from the median, in robust standard deviations.
-///
-/// The modified z-score [IglewiczHoaglin1993]: (x - median) / (1.4826 MAD), MAD being the median
-/// distance from the median; where more than half of the values are equal, so that it is 0, the
-/// mean distance times 1.2533 replaces it. Up to half of the values may be wrong without moving the
-/// scale much.
-/// \return  empty for a missing value; all empty if fewer than 5 values are there, or all are equal
-std::vector<std::optional<double>> robustScores(std::span<const std::optional<double>> values);
+Json qualityDictionary(const OutlierRule& rule);
 
 }  // namespace adaptiso::bids

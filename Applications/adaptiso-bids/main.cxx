@@ -67,10 +67,10 @@ void declareWhat(CLI::App& app, BidsOptions& options) {
 
 void declareRunning(CLI::App& app, BidsOptions& options) {
     const OptionGroup group(app, "Group level");
-    group.number("--outlier", "Z", options.outlierLimit, {.least = 0, .isAbove = true},
+    group.number("--outlier", "Z", options.outliers.limit, {.least = 0, .isAbove = true},
                  "Mark values farther than Z robust standard deviations (1.4826 times the median "
                  "distance from the median) from the cohort's median (default: 3.5)");
-    group.number("--outlier-percent", "P", options.outlierPercent, {.least = 0, .most = 100},
+    group.number("--outlier-percent", "P", options.outliers.leastPercent, {.least = 0, .most = 100},
                  "Do not mark values within P per cent of the median (default: 1)");
     OptionGroup(app, "Running")
         .count("--jobs", options.jobs, 1, 1024,

@@ -447,7 +447,7 @@ private:
         if (!walls || !walls->hasWall()) return;
         const Check* check = failed(surface_.checks, "minWall");
         spots_.push_back({"thinnest wall, " + wallText(*walls) + "," + in_,
-                          middleOf(mesh_, walls->triangle), check && check->isRequired});
+                          wallPoint(*walls, mesh_), check && check->isRequired});
     }
 
     void addDeviation() {
@@ -479,10 +479,16 @@ std::vector<ReportSpot> spotsOf(const NestingRun& pair, const std::string& inner
     std::vector<ReportSpot> spots;
     const NestingReport& report = pair.report;
     const std::string names = innerName + " and " + outerName;
+    NearestPoints nearest;
+    if (report.gap.triangleA >= 0) {
+        nearest = triangleDistance(cornersOf(inner, report.gap.triangleA),
+                                   cornersOf(outer, report.gap.triangleB));
+    }
     if (const Check* check = failed(pair.checks, "noCrossing")) {
         SpotClusters clusters(inner);
         for (std::size_t n = 0; n < std::min(report.pairs.size(), kMostMembers); ++n) {
-            clusters.add(middleOf(inner, report.pairs[n][0]));
+            const bool isNearest = n == 0 && report.gap.triangleA >= 0;
+            clusters.add(isNearest ? nearest.pointA : middleOf(inner, report.pairs[n][0]));
         }
         clusters.tell(
             names + (report.relation == NestingRelation::Identical ? " are the same surface"
@@ -496,8 +502,6 @@ std::vector<ReportSpot> spotsOf(const NestingRun& pair, const std::string& inner
     }
     if (report.gap.triangleA < 0 || report.crossingPairs > 0) return spots;
     const Check* check = failed(pair.checks, "minGap");
-    const NearestPoints nearest = triangleDistance(cornersOf(inner, report.gap.triangleA),
-                                                   cornersOf(outer, report.gap.triangleB));
     spots.push_back(
         {"smallest gap, " + formatLength(nearest.distanceMm, 2) + " mm, between " + names,
          nearest.pointA, check && check->isRequired});

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "Common/BatchSummary.h"
 
@@ -22,7 +25,25 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    std::string page() const { return summaryPage({row_}, folder_ / "summary.html"); }
+    std::string page() const { return pageOf({row_}); }
+    std::string pageOf(std::vector<SummaryRow> rows) const {
+        Summary summary{std::move(rows)};
+        summary.program = "adaptiso-mesh 1.2.3";
+        summary.command = "adaptiso-mesh INPUT... --output-dir out";
+        return summaryPage(summary, folder_ / "summary.html");
+    }
+    /// `count` runs of alike volumes, and one of `other` mm3.
+    static std::vector<SummaryRow> runs(int count, double other) {
+        std::vector<SummaryRow> rows;
+        for (int n = 0; n <= count; ++n) {
+            SummaryRow row{"adaptiso-mesh", "run" + std::to_string(n)};
+            row.file = row.name + ".nii";
+            row.state = RunState::Done;
+            row.volumesMm3 = {{"", n == count ? other : 1000 + n}};
+            rows.push_back(row);
+        }
+        return rows;
+    }
     void write(const std::string& name, const std::string& text) const {
         fs::create_directories((folder_ / name).parent_path());
         std::ofstream(folder_ / name) << text;
@@ -36,7 +57,8 @@ TEST_F(BatchSummaryTest, LinksTheReport) {
     write("reports/a.html", "<img src=\"data:image/png;base64,AAAA\">");
     row_.report = folder_ / "reports/a.html";
     const std::string text = page();
-    EXPECT_NE(text.find("<a href=\"reports/a.html\">report of a</a>"), std::string::npos);
+    EXPECT_NE(text.find("<th scope=\"row\"><a href=\"reports/a.html\">a</a></th>"),
+              std::string::npos);
     EXPECT_EQ(text.find("<img"), std::string::npos);  // 1,000 reports would be 300 MB
 }
 
@@ -63,43 +85,119 @@ TEST_F(BatchSummaryTest, HasNoColumnThatSaysNothing) {
     row_.file = "a.nii.gz";
     other.name = "b";
     other.file = "b.nii.gz";
-    std::string text = summaryPage({row_, other}, folder_ / "summary.html");
-    for (const char* const column : {"program", "input", "picture"}) {
-        EXPECT_EQ(text.find("<th>" + std::string(column)), std::string::npos) << column;
+    std::string text = pageOf({row_, other});
+    for (const char* const column : {"Program", "Input", "Picture", "Files", "Volume, mm³"}) {
+        EXPECT_EQ(text.find(column + std::string("</th>")), std::string::npos) << column;
     }
-    EXPECT_NE(text.find(", adaptiso-mesh</p>"), std::string::npos);
+    EXPECT_NE(text.find("<h1>2 runs of adaptiso-mesh</h1>"), std::string::npos);
     write("p/surface-1.png", "png");
     row_.pictures = folder_ / "p";
     other.program = "adaptiso-check";
     other.file = "scan.nii";
-    text = summaryPage({row_, other}, folder_ / "summary.html");
-    for (const char* const column : {"program", "input", "picture"}) {
-        EXPECT_NE(text.find("<th>" + std::string(column)), std::string::npos) << column;
+    text = pageOf({row_, other});
+    for (const char* const column : {"Program", "Input", "Picture"}) {
+        EXPECT_NE(text.find(column + std::string("</th>")), std::string::npos) << column;
     }
 }
 
-TEST_F(BatchSummaryTest, ForbidsItselfScriptsAndConnections) {
+TEST_F(BatchSummaryTest, RunsItsOwnScriptAloneAndLoadsPicturesAlone) {
     const std::string text = page();
     const std::size_t policy = text.find("Content-Security-Policy");
     ASSERT_NE(policy, std::string::npos);
     EXPECT_LT(policy, text.find("<style>"));
-    EXPECT_NE(text.find("default-src 'none'; img-src 'self' file:;"), std::string::npos);
-    EXPECT_EQ(text.find("script-src"), std::string::npos);
+    EXPECT_NE(text.find("default-src 'none'; img-src 'self' file:; script-src 'sha256-", policy),
+              std::string::npos);
+    EXPECT_EQ(text.find("connect-src"), std::string::npos);
+    EXPECT_EQ(text.find("<script>"), text.rfind("<script>"));
+}
+
+TEST_F(BatchSummaryTest, HoldsWhatMadeItAndWhatMakesItAgain) {
+    const std::string text = page();
+    EXPECT_NE(text.find("<dd>adaptiso-mesh 1.2.3</dd>"), std::string::npos);
+    EXPECT_NE(text.find("<dd>adaptiso-mesh INPUT... --output-dir out</dd>"), std::string::npos);
+}
+
+TEST_F(BatchSummaryTest, EscapesTextsAndIsTheSameForTheSameRows) {
+    row_.name = row_.says = row_.reason = "<b onclick=x>\"&'";
+    row_.warnings = {"<i>"};
+    row_.volumesMm3 = {{"<u>", 5}};
+    std::vector<SummaryRow> rows(7, row_);
+    rows.back().volumesMm3 = {{"<u>", 500}};
+    const std::string text = pageOf(rows);
+    EXPECT_EQ(text, pageOf(rows));
+    for (const char* const tag : {"<b ", "<i>", "<u>"}) {
+        EXPECT_EQ(text.find(tag), std::string::npos) << tag;
+    }
+}
+
+TEST_F(BatchSummaryTest, CountsEachRunOnceForItsReason) {
+    std::vector<SummaryRow> rows = runs(6, 1000);
+    rows[0].state = rows[2].state = rows[5].state = RunState::Failed;
+    rows[0].reason = rows[5].reason = "closed";
+    rows[2].reason = "truncated";
+    rows[1].warnings = rows[2].warnings = {"guessed-unit"};
+    rows[1].warnings.push_back("not-finite");
+    const std::vector<SummaryReason> reasons = reasonsOf(rows);
+    ASSERT_EQ(reasons.size(), 4U);
+    EXPECT_EQ(reasons[0].reason, "closed");
+    EXPECT_EQ(reasons[0].names, (std::vector<std::string>{"run0.nii", "run5.nii"}));
+    EXPECT_EQ(reasons[1].reason, "truncated");
+    EXPECT_EQ(reasons[2].reason, "guessed-unit");
+    std::size_t failed = 0;
+    for (const SummaryReason& reason : reasons)
+        failed += reason.isWarning ? 0 : reason.names.size();
+    EXPECT_EQ(failed, 3U);
+}
+
+TEST_F(BatchSummaryTest, DrawsChartsOfFiveRunsAndMore) {
+    EXPECT_EQ(pageOf(runs(3, 1900)).find("<svg"), std::string::npos);
+    EXPECT_NE(pageOf(runs(6, NAN)).find("</strong>, 6 runs, median"), std::string::npos);
+    const std::string text = pageOf(runs(6, 1900));
+    EXPECT_NE(text.find("Outliers: <a href=\"#run-7\">run6</a> (+89%)"), std::string::npos);
+    EXPECT_NE(text.find("more than 3.5 robust standard deviations"), std::string::npos);
+    EXPECT_EQ(text.find("<circle class=\"apart\""), text.rfind("<circle class=\"apart\""));
+    EXPECT_EQ(pageOf(runs(6, 1003)).find("Outliers:"), std::string::npos);
+}
+
+TEST_F(BatchSummaryTest, DrawsNoChartOfWhatNoAxisHolds) {
+    std::vector<SummaryRow> rows = runs(6, 1e308);
+    rows[0].volumesMm3.front().second = -1e308;  // their difference is no number
+    EXPECT_EQ(pageOf(rows).find("<svg"), std::string::npos);
+    EXPECT_EQ(pageOf(runs(6, 0)).find("not a number"), std::string::npos);
+    for (SummaryRow& row : rows) row.volumesMm3.front().second = 7;
+    EXPECT_EQ(pageOf(rows).find("<svg"), std::string::npos);
+}
+
+TEST_F(BatchSummaryTest, SortsByNumbersAndStates) {
+    std::vector<SummaryRow> rows = runs(1, 123456.75);
+    rows[0].state = RunState::Unusual;
+    rows[1].seconds = 12.345;
+    const std::string text = pageOf(rows);
+    for (const char* const key : {"data-key=\"4\">▲", "data-key=\"5\">✔",
+                                  "data-key=\"123456.75\">123,457<", "data-key=\"12.345\">12.3<"}) {
+        EXPECT_NE(text.find(key), std::string::npos) << key;
+    }
 }
 
 TEST_F(BatchSummaryTest, SaysTheVerdictInWords) {
     row_.state = RunState::Failed;
     EXPECT_NE(page().find("1 of 1 failed"), std::string::npos);
+    EXPECT_NE(page().find("<title>FAILED: "), std::string::npos);
     row_.state = RunState::Done;
     EXPECT_NE(page().find("All 1 done"), std::string::npos);
+    EXPECT_NE(page().find("<title>PASSED: "), std::string::npos);
+    row_.warnings = {"not-finite"};
+    EXPECT_NE(page().find("<title>PASSED WITH WARNINGS: "), std::string::npos);
+    row_.state = RunState::NotFinished;
+    EXPECT_NE(page().find("<title>NOT FINISHED: "), std::string::npos);
     row_.state = RunState::NotRun;
     SummaryRow gone = row_, half = row_;
     gone.state = RunState::Changed;
     half.state = RunState::NotFinished;
-    const std::string text = summaryPage({row_, gone, half}, folder_ / "summary.html");
+    const std::string text = pageOf({row_, gone, half});
     EXPECT_NE(text.find("1 of 3 missing or changed, 1 not finished, 1 not run"), std::string::npos);
-    EXPECT_EQ(text.find("class=\"ok\""), std::string::npos);
-    EXPECT_EQ(summaryPage({}, folder_ / "summary.html").find("done"), std::string::npos);
+    EXPECT_EQ(text.find("✔"), std::string::npos);
+    EXPECT_EQ(pageOf({}).find("All"), std::string::npos);
 }
 
 }  // namespace

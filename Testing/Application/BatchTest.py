@@ -27,8 +27,8 @@ class Page(html.parser.HTMLParser):
 
     def handle_starttag(self, tag, attrs):
         values = dict(attrs)
-        self.links += [values[key] for key in ("href", "src") if key in values]
-        if tag not in ("meta", "img", "br"):
+        self.links += [values[key] for key in ("href", "src") if key in values and values[key][0] != "#"]
+        if tag not in ("meta", "img", "br", "input"):
             self.open.append(tag)
         if tag in ("td", "th"):
             self.cells.append("")

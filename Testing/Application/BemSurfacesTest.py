@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -80,7 +81,7 @@ class Surfaces(BemTest):
 
     def test_given_ones_that_are_moved_are_a_warning_with_count_length_and_place(self):
         names = self.write(globe(60, centre=(10, 0, 0)), globe(66), globe(72))
-        done = self.bem("--surfaces", *names, "-o", "model")
+        done = self.bem("--surfaces", *names, "-o", "model", "--report", "page.html")
         report = self.report()
         moved = {w["text"].split(":")[0]: w for w in report["input"]["warnings"]
                  if w["code"] == "surface-moved"}
@@ -98,6 +99,8 @@ class Surfaces(BemTest):
                              rf"^{name}: {nesting['movedVertices']} of {len(given)} vertices were "
                              rf"moved by up to {nesting['maximumMm']:.2f} mm, at \(")
             self.assertIn("warning: " + moved[name]["text"], done.stderr)
+            place = re.search(r"at (\(.*?\)) mm RAS", moved[name]["text"])[1]
+            self.assertIn(f'<span class="where">{place}</span>', self.path("page.html").read_text())
         self.assertEqual(self.run_bem("--surfaces", *names, "-o", "strict", "--strict").returncode,
                          CHECK_FAILED)
         self.assertFalse((self.path("strict") / "inner_skull.tri").exists())

@@ -1,5 +1,5 @@
 """Report pages on paper: printed to PDF by Chromium, no picture is cut by the edge of a sheet, and
-captions and headings stay with what they are of."""
+captions and headings stay with what they are of. Pages without WebGL, and those of batches."""
 
 import base64
 import shutil
@@ -61,6 +61,11 @@ class Printed(unittest.TestCase):
             write_off(cls.folder / surfaces[-1], icosphere(radius, 2))
         cls.write("bem.html", "adaptiso-bem", "--dry-run", "--surfaces", *surfaces)
         cls.write("check.html", "adaptiso-check", "--nested", *surfaces)
+        for n, radius in enumerate((60, 80.1, 80.2, 80.3, 80.4, 80.5)):
+            write_off(cls.folder / f"s{n}.off", icosphere(radius, 1))
+        (cls.folder / "s6.off").write_text("OFF\n3 1 0\n")
+        subprocess.run([str(BIN / "adaptiso-check"), *(f"s{n}.off" for n in range(7)), "--quiet",
+                        "--output-dir", "batch"], cwd=cls.folder, timeout=300, stderr=subprocess.DEVNULL)
 
     @classmethod
     def tearDownClass(cls):
@@ -100,6 +105,43 @@ class Printed(unittest.TestCase):
         self.assertEqual(sheets.parted(captions), [])
         self.assertIn("Pictures", headings)
         self.assertEqual(sheets.left_behind(headings, captions), [])
+
+    def test_a_picture_stands_in_the_viewers_place(self):
+        self.assertEqual(self.browser.open(self.folder / "check.html"), "missing")
+        self.assertEqual(self.browser.run("return document.querySelector('.stage').offsetHeight"), 0)
+        self.assertEqual(self.browser.find("button[data-spot]"), [])  # they would move nothing
+        after = self.browser.find("#viewer + figure img")[0]
+        self.assertIn("r80.off", after.get_attribute("alt"))
+
+    def names(self):
+        return self.browser.run("""return [...document.querySelectorAll("#runs tbody tr:not([hidden]) th")]
+            .map((cell) => cell.textContent.slice(0, 2)).join(" ")""")
+
+    def test_the_runs_of_a_batch_are_sorted_and_filtered(self):
+        self.browser.open(self.folder / "batch/summary.html")
+        self.assertEqual(self.names(), "s6 s0 s1 s2 s3 s4 s5")  # what failed is first
+        def head(n):
+            return self.browser.find(f"#runs thead th:nth-child({n}) button")[0]
+        column = next(n for n in range(1, 9) if head(n).text.startswith("Volume"))
+        for order in ("s0 s1 s2 s3 s4 s5 s6", "s5 s4 s3 s2 s1 s0 s6"):  # without a volume: last
+            head(column).click()
+            self.assertEqual(self.names(), order)
+        self.browser.find("#find")[0].send_keys("S3")
+        self.assertEqual((self.names(), self.browser.find("#run-count")[0].text), ("s3", "1 of 7"))
+        self.browser.find("#find")[0].clear()
+        self.browser.run("""const state = document.getElementById("state"); state.value = "0";
+            state.dispatchEvent(new Event("change")); document.getElementById("find").value = "";
+            state.dispatchEvent(new Event("change"));""")
+        self.assertEqual(self.names(), "s6")
+
+    def test_a_page_of_a_batch_fits_desks_and_phones(self):
+        self.browser.open(self.folder / "batch/summary.html")
+        self.addCleanup(self.browser.resize, 1280, 1700)
+        for width in (390, 1300):
+            self.browser.resize(width)
+            self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width)
+        self.assertEqual(len(self.browser.find(".charts svg .apart")), 1)
+        self.assertIn("s0.off", self.browser.find(".charts figcaption a")[0].text)
 
     def test_a_page_of_adaptiso_bem(self):
         self.assert_whole("bem.html")

@@ -31,14 +31,16 @@ class RecordsTest(BatchTest):
     def rows(self, page="out/summary.html"):
         """Verdict and what came of it by name and program, in the page's order; and the title."""
         text = self.path(page).read_text()
-        parsed = Page(text)
-        cells = [cell.replace("\xa0", " ") for cell in parsed.cells]
-        width = cells.index("seconds") + 1  # columns that would say nothing are left out
+        self.assertEqual(Page(text).open, [])
+        table = text[text.index('<table id="runs"'):]
+        table = table[:table.index("</table>")]
+        cells = [cell.replace("\xa0", " ") for cell in Page(table).cells]
+        width = cells.index("Ended, UTC") + 1  # columns that would say nothing are left out
         rows = [dict(zip(cells[:width], cells[n:n + width])) for n in range(width, len(cells), width)]
-        title = text[text.index("<h1"):text.index("</h1>")]
-        return ({(row["name"], row.get("program", "adaptiso-mesh").removeprefix("adaptiso-")):
-                 (row["verdict"][2:], row["result"]) for row in rows},
-                title[title.index(">") + 1:])
+        title = text[text.index('<p class="headline">'):]
+        return ({(row["Name"], row.get("Program", "adaptiso-mesh").removeprefix("adaptiso-")):
+                 (row["State"][2:], row["Result"]) for row in rows},
+                title[title.index(">") + 1:title.index("</p>")])
 
 
 class Skipping(RecordsTest):

@@ -13,6 +13,7 @@
 #include "WorkingGrid.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/Plausibility.h"
 #include "adaptiso/HeadModel/SourceError.h"
 
@@ -243,7 +244,7 @@ void requireBandInSight(const SkullBand& band, bool isGuess, double csfMm, RawBo
     }
     if (band.unseenMm2 > kMostUnseenMm2) {
         const Vec3& p = band.unseenMm;
-        const auto text = [](double mm) { return shortNumber(std::round(mm)); };
+        const auto text = [](double mm) { return formatFixed(mm, 1); };
         const std::string unseen = "the skull does not show on " +
                                    shortNumber(std::round(band.unseenMm2 / 100)) +
                                    " cm2 in one piece";

@@ -177,6 +177,9 @@ void reportRemade(const TriangleMesh& given, std::size_t n, BemModel& model) {
                               " vertices given lie more than " + formatShort(kRemadeMm) +
                               " mm from the model's surface, up to " + formatLength(farthestMm, 2) +
                               " mm at " + rasText(farthest)});
+    model.doubts.push_back({bemSurfaceName(n, model.meshes.size()) + ": given vertex " +
+                                formatLength(farthestMm, 2) + " mm from the model's surface",
+                            farthest});
 }
 
 /// Surfaces that were given are changed by no more than their digits without a warning; those found
@@ -190,6 +193,8 @@ void reportMoves(BemModel& model) {
         const std::string name = bemSurfaceName(n, model.meshes.size());
         if (model.source == BemSource::Surfaces && mm > kGivenMm) {
             model.warnings.push_back({"surface-moved", name + ": " + moveText(n, model)});
+            model.doubts.push_back({name + ": moved by " + formatLength(mm, 2) + " mm",
+                                    model.surfaces[n].move.maximumPointMm});
         } else if (model.source != BemSource::Surfaces && mm > kFoundMm) {
             model.notes.push_back(name + ": " + moveText(n, model));
         }
@@ -234,6 +239,9 @@ void compareWithSegmentation(BemModel& model) {
                  formatLength(skull.mostThickenedMm, 1) + " mm at " + rasText(*skull.thickenedMm) +
                  " (median " + formatLength(skull.medianMm, 1) + " mm, " +
                  formatLength(skull.modelMedianMm, 1) + " mm in the model)"});
+        model.doubts.push_back(
+            {"skull thickened by " + formatLength(skull.mostThickenedMm, 1) + " mm",
+             *skull.thickenedMm});
     }
     if (!skull.holeVertices.empty()) {
         model.warnings.push_back(
@@ -241,6 +249,9 @@ void compareWithSegmentation(BemModel& model) {
                                  " in the segmentation's skull, around " + rasText(*skull.holeMm) +
                                  ", is closed in the surfaces: boundary elements need a "
                                  "closed shell; --tetrahedra leaves it open"});
+        model.doubts.push_back({"hole of " + share(skull.largestHoleMm2) +
+                                    " in the segmentation's skull, closed in the surfaces",
+                                *skull.holeMm});
     }
 }
 

@@ -63,6 +63,13 @@ double least(const WallReport& report) {
     return report.hasWall() ? report.leastMm : std::numeric_limits<double>::infinity();
 }
 
+/// In the middle of a triangle (corner -1), or near a corner of it.
+Vec3 pointNear(const Corners& c, int corner) {
+    constexpr double kToMiddle = 0.1;
+    const Vec3 middle = 1.0 / 3 * (c[0] + c[1] + c[2]);
+    return corner < 0 ? middle : c[corner] + kToMiddle * (middle - c[corner]);
+}
+
 /// Adds what is below one triangle.
 void measure(const Solid& solid, const TriangleMesh& mesh, std::int64_t triangle, double limitMm,
              WallReport& report) {
@@ -71,25 +78,28 @@ void measure(const Solid& solid, const TriangleMesh& mesh, std::int64_t triangle
     const double area2 = norm(area);
     if (!(area2 > 0)) return;
     report.areaMm2 += 0.5 * area2;
-    const Vec3 inward = -1 / area2 * area, middle = 1.0 / 3 * (c[0] + c[1] + c[2]);
-    constexpr double kToMiddle = 0.1;
-    std::array<Vec3, 4> points{middle};
+    const Vec3 inward = -1 / area2 * area;
     const double longest = std::max({norm(c[1] - c[0]), norm(c[2] - c[1]), norm(c[0] - c[2])});
-    const std::size_t count = longest > limitMm ? 4 : 1;
-    for (std::size_t n = 1; n < count; ++n) points[n] = c[n - 1] + kToMiddle * (middle - c[n - 1]);
+    const int count = longest > limitMm ? 4 : 1;
     int thin = 0;
-    for (std::size_t n = 0; n < count; ++n) {
-        const double mm = solid.throughFrom(points[n], inward, std::max(limitMm, least(report)));
+    for (int n = 0; n < count; ++n) {
+        const Vec3 point = pointNear(c, n - 1);
+        const double mm = solid.throughFrom(point, inward, std::max(limitMm, least(report)));
         thin += int{mm < limitMm};
         if (!(mm < least(report))) continue;
         report.leastMm = mm;
         report.triangle = triangle;
-        report.pointMm = points[n];
+        report.corner = n - 1;
+        report.pointMm = point;
     }
     report.thinAreaMm2 += 0.5 * area2 * thin / static_cast<double>(count);
 }
 
 }  // namespace
+
+Vec3 wallPoint(const WallReport& report, const TriangleMesh& mesh) {
+    return pointNear(cornersOf(mesh, report.triangle), report.corner);
+}
 
 WallReport measureWalls(const TriangleMesh& mesh, double limitMm) {
     if (mesh.triangles.empty()) return {};

@@ -34,6 +34,9 @@ void main() {
     byId("viewer-missing").textContent = message;
     byId("viewer-missing").hidden = false;
     document.querySelector(".stage").hidden = true;
+    byId("viewer").after(...document.querySelectorAll("figure.stands-in"));
+    for (const spot of document.querySelectorAll("button[data-spot]")) spot.replaceWith(...spot.childNodes);
+    for (const hint of document.querySelectorAll(".spots-hint")) hint.remove();
     document.body.dataset.viewer = "missing";
   };
 
@@ -315,8 +318,7 @@ void main() {
   const start = async () => {
     if (!document.createElement("canvas").getContext("webgl2")) {
       fail("The viewer needs WebGL 2, which this browser does not have or has turned off. "
-        + (byId("pictures-title") ? "The pictures below show the same surfaces."
-          : "The picture shows the same surfaces."));
+        + "The picture shows the same surfaces.");
       return;
     }
     const nv = new niivue.Niivue({

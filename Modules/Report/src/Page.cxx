@@ -1,10 +1,11 @@
 #include "adaptiso/Report/Page.h"
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
+#include "Html.h"
 #include "PageFiles.h"
 #include "PageParts.h"
 #include "Scene.h"
@@ -15,46 +16,6 @@ namespace adaptiso {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Values = std::map<std::string_view, std::string_view>;
-
-/// `pattern` with every {{NAME}} replaced by its value; values are taken as they are.
-/// \throws InternalError  a name that has no value
-std::string fill(std::string_view pattern, const Values& values) {
-    std::string text;
-    std::size_t length = pattern.size();
-    for (const auto& [name, value] : values) length += value.size();
-    text.reserve(length);
-    for (std::size_t at = 0; at < pattern.size();) {
-        const std::size_t open = pattern.find("{{", at);
-        text += pattern.substr(at, open - at);
-        if (open == std::string_view::npos) break;
-        const std::size_t close = pattern.find("}}", open);
-        const auto value = values.find(pattern.substr(open + 2, close - open - 2));
-        if (close == std::string_view::npos || value == values.end()) {
-            throw InternalError("htmlPage: a name in the page's pattern has no value");
-        }
-        text += value->second;
-        at = close + 2;
-    }
-    return text;
-}
-
-struct VerdictWords {
-    const char *style, *sign, *word;
-};
-
-VerdictWords wordsOf(const Report& report) {
-    switch (report.verdict) {
-        case ReportVerdict::Passed:
-            if (!report.warnings.empty()) return {"doubtful", "▲", "PASSED WITH WARNINGS"};
-            return {"passed", "✔", "PASSED"};
-        case ReportVerdict::Failed:
-            return {"failed", "✘", "FAILED"};
-        case ReportVerdict::Done:
-            return {"done", "●", "DONE"};
-    }
-    throw InternalError("wordsOf: unknown verdict");
-}
 
 /// Text in a script element that is data: nothing in it can end the element.
 std::string dataElement(const std::string& id, const std::string& type, const std::string& text) {
@@ -145,29 +106,9 @@ std::string viewerData(const Report& report, const Scene& scene, const PageOptio
     return elements;
 }
 
-/// A script as the page's policy lets it run: its bytes are all that is in the element.
-void addScript(std::string_view script, std::string& html) {
-    html += "<script>";
-    html += script;
-    html += "</script>\n";
-}
-
 void addViewerScripts(std::string& html) {
     addScript(embedded::niivueJs(), html);
     addScript(embedded::viewerJs(), html);
-}
-
-/// Sources for a Content-Security-Policy: scripts of these checksums alone.
-std::string scriptHashes(const std::vector<std::string_view>& checksums) {
-    std::string sources;
-    for (const std::string_view hex : checksums) {
-        std::string bytes;
-        for (std::size_t at = 0; at < hex.size(); at += 2) {
-            bytes += static_cast<char>(std::stoi(std::string(hex.substr(at, 2)), nullptr, 16));
-        }
-        sources += (sources.empty() ? "'sha256-" : " 'sha256-") + encodeBase64(bytes) + "'";
-    }
-    return sources.empty() ? "'none'" : sources;
 }
 
 /// Like addViewerScripts(), with niivue's script packed: a third of its size.
@@ -205,44 +146,33 @@ std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
         scripts = viewerData(report, scene, options, notes);
         addViewerScripts(scripts);
     }
-    const VerdictWords words = wordsOf(report);
-    const std::string licenses = "<details><summary>Licences of the viewer</summary><pre>" +
-                                 escaped(std::string(embedded::licenses())) + "</pre></details>";
-    const std::string scale = scaleHtml(scene);
-    const std::string viewer = showsViewer ? fill(embedded::viewerHtml(), {{"SCALE", scale}}) : "";
-    const std::string generator = escaped(report.program + " " + report.version),
-                      title = escaped(report.title), headline = escaped(report.headline),
-                      date = escaped(report.date), frame = escaped(report.frame),
-                      failures = failuresHtml(report), warnings = warningsHtml(report),
-                      facts = factsHtml(report), face = faceHtml(report, scene),
-                      spots = spotsHtml(scene, showsViewer), checks = checksHtml(report),
-                      tables = tablesHtml(report), drawn = picturesHtml(pictures),
-                      told = notesHtml(report, notes);
     const std::string hashes =
         showsViewer ? scriptHashes({embedded::niivueJsSha256(), embedded::viewerJsSha256()})
                     : scriptHashes({});
-    return fill(embedded::pageHtml(), {{"GENERATOR", generator},
-                                       {"SCRIPT_HASHES", hashes},
-                                       {"VERDICT_CLASS", words.style},
-                                       {"VERDICT_SIGN", words.sign},
-                                       {"VERDICT_WORD", words.word},
-                                       {"TITLE", title},
-                                       {"HEADLINE", headline},
-                                       {"FAILURES", failures},
-                                       {"WARNINGS", warnings},
-                                       {"DATE", date},
-                                       {"FRAME", frame},
-                                       {"STYLE", embedded::styleCss()},
-                                       {"FACTS", facts},
-                                       {"FACE", face},
-                                       {"VIEWER", viewer},
-                                       {"SPOTS", spots},
-                                       {"CHECKS", checks},
-                                       {"TABLES", tables},
-                                       {"PICTURES", drawn},
-                                       {"NOTES", told},
-                                       {"LICENSES", showsViewer ? std::string_view(licenses) : ""},
-                                       {"SCRIPTS", scripts}});
+    const std::string scale = scaleHtml(scene);
+    PageFrame frame;
+    frame.verdict = report.verdict;
+    frame.hasWarnings = !report.warnings.empty();
+    frame.generator = report.program + " " + report.version;
+    frame.date = report.date;
+    frame.title = report.title;
+    frame.headline = report.headline;
+    frame.banner = failuresHtml(report) + warningsHtml(report);
+    frame.facts = factsHtml(report);
+    frame.body = faceHtml(report, scene) + spotsHtml(scene, showsViewer) +
+                 (showsViewer ? fill(embedded::viewerHtml(), {{"SCALE", scale}}) : "") +
+                 checksHtml(report) + tablesHtml(report) + picturesHtml(pictures) +
+                 notesHtml(report, notes);
+    frame.sources = "img-src data: blob:; script-src " + hashes +
+                    "; connect-src data: blob:; worker-src blob:; font-src data:";
+    frame.footnote = "Points are in " + report.frame +
+                     ". This page holds everything it needs, loads nothing and sends nothing.";
+    if (showsViewer) {
+        frame.end = "<details><summary>Licences of the viewer</summary><pre>" +
+                    escaped(std::string(embedded::licenses())) + "</pre></details>";
+    }
+    frame.scripts = std::move(scripts);
+    return framed(frame);
 }
 
 std::string notebookHtml(const Report& report, const Picture& picture, const PageOptions& options) {

@@ -10,12 +10,14 @@ std::string_view notebookHtml();
 std::string_view viewerHtml();
 std::string_view styleCss();
 std::string_view unpackJs();
+std::string_view summaryJs();
 std::string_view viewerJs();
 std::string_view niivueJs();  ///< empty when niivue could not be had
 std::string_view licenses();
 
 /// Of the scripts' bytes, in hexadecimal; empty for an empty one.
 std::string_view unpackJsSha256();
+std::string_view summaryJsSha256();
 std::string_view viewerJsSha256();
 std::string_view niivueJsSha256();
 

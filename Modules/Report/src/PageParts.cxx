@@ -3,23 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
 namespace {
-
-/// A list of names and values under a heading.
-std::string factList(const std::string& title, const std::vector<ReportFact>& facts) {
-    if (facts.empty()) return "";
-    std::string html = "<div>\n<h2>" + title + "</h2>\n<dl>\n";
-    for (const auto& [name, value] : facts) {
-        html += "<dt>" + escaped(name) + "</dt><dd>" + escaped(value) + "</dd>\n";
-    }
-    return html + "</dl>\n</div>\n";
-}
 
 struct OutcomeWords {
     const char *style, *text;
@@ -44,11 +33,6 @@ std::string pointText(const Vec3& rasMm) {
            formatFixed(rasMm.z, 1);
 }
 
-/// \param column  what phones, which show a row as a card, put before it
-std::string cell(const std::string& column, const std::string& text) {
-    return "<td data-label=\"" + escaped(column) + "\">" + escaped(text) + "</td>";
-}
-
 std::string checkRow(const ReportCheck& check) {
     const OutcomeWords words = wordsOf(check.outcome);
     return std::string("<tr><td class=\"outcome ") + words.style + "\">" + words.text +
@@ -63,21 +47,6 @@ std::string checkTable(const std::string& label, const std::vector<const ReportC
         "scope=\"col\">Found</th></tr></thead>\n<tbody>\n";
     for (const ReportCheck* check : checks) html += checkRow(*check);
     return scrollable(label, html + "</tbody>\n</table>");
-}
-
-/// Items that a list in the banner shows.
-constexpr std::size_t kNamed = 3;
-
-/// A list in the banner of the first kNamed `items` of `count`. The others stand at `anchor`.
-std::string bannerList(const std::string& label, const std::string& items, std::size_t count,
-                       const std::string& anchor) {
-    if (count == 0) return "";
-    std::string html = "<ul class=\"named\" aria-label=\"" + label + "\">\n" + items;
-    if (count > kNamed) {
-        html += "<li><a href=\"#" + anchor + "\">and " + std::to_string(count - kNamed) +
-                " more</a></li>\n";
-    }
-    return html + "</ul>\n";
 }
 
 std::string tableHtml(const ReportTable& table) {
@@ -99,44 +68,6 @@ std::string tableHtml(const ReportTable& table) {
 }
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-    using nlohmann::json;
-    const std::string valid = json::parse(
-        json(withoutControls(text, "\n\t")).dump(-1, ' ', false, json::error_handler_t::replace));
-    std::string html;
-    for (const char c : valid) {
-        switch (c) {
-            case '&':
-                html += "&amp;";
-                break;
-            case '<':
-                html += "&lt;";
-                break;
-            case '>':
-                html += "&gt;";
-                break;
-            case '"':
-                html += "&quot;";
-                break;
-            case '\'':
-                html += "&#39;";
-                break;
-            default:
-                if (static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t') {
-                    html += "\uFFFD";
-                } else {
-                    html += c;
-                }
-        }
-    }
-    return html;
-}
-
-std::string scrollable(const std::string& label, const std::string& html) {
-    return "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" + escaped(label) +
-           "\">" + html + "</div>\n";
-}
 
 std::string failuresHtml(const Report& report) {
     std::string html;
@@ -228,7 +159,11 @@ std::string spotsHtml(const Scene& scene, bool hasViewer) {
     if (scene.spots.empty()) return "";
     std::string html =
         "<section aria-labelledby=\"spots-title\">\n<h2 id=\"spots-title\">Where to look</h2>\n";
-    if (hasViewer) html += "<p>A click moves the crosshair of the viewer below to the place.</p>\n";
+    if (hasViewer) {
+        html +=
+            "<p class=\"spots-hint\">A click moves the crosshair of the viewer below to the "
+            "place.</p>\n";
+    }
     html += "<ol class=\"spots\" tabindex=\"0\" aria-label=\"Places to look at\">\n";
     for (std::size_t n = 0; n < scene.spots.size(); ++n) {
         const SceneSpot& spot = scene.spots[n];
@@ -299,12 +234,15 @@ std::string picturesHtml(const std::vector<Picture>& pictures) {
         "<section aria-labelledby=\"pictures-title\">\n<h2 "
         "id=\"pictures-title\">Pictures</h2>\n";
     for (const Picture& picture : pictures) {
-        html +=
-            "<figure><div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Picture: " +
-            escaped(picture.title) + "\"><img alt=\"" + escaped(picture.altText) + "\" width=\"" +
-            std::to_string(picture.width) + "\" height=\"" + std::to_string(picture.height) +
-            "\" src=\"data:image/png;base64," + encodeBase64(picture.png) +
-            "\"></div><figcaption>" + escaped(picture.title) + "</figcaption></figure>\n";
+        // in the viewer's place, where there is none
+        const bool standsIn = picture.name == "surface-1.png" || picture.name == "regions.png";
+        html += std::string(standsIn ? "<figure class=\"stands-in\">" : "<figure>") +
+                "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Picture: " +
+                escaped(picture.title) + "\"><img alt=\"" + escaped(picture.altText) +
+                "\" width=\"" + std::to_string(picture.width) + "\" height=\"" +
+                std::to_string(picture.height) + "\" src=\"data:image/png;base64," +
+                encodeBase64(picture.png) + "\"></div><figcaption>" + escaped(picture.title) +
+                "</figcaption></figure>\n";
     }
     return html + "</section>\n";
 }

@@ -5,20 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "Html.h"
 #include "Scene.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Report/Page.h"
 #include "adaptiso/Report/Report.h"
 
 namespace adaptiso {
-
-/// `text` as it can stand in HTML, in an element or a quoted attribute. What is not UTF-8 becomes
-/// U+FFFD, and so do control characters.
-std::string escaped(const std::string& text);
-
-/// `html`, which may be wider than the page, in a part that scrolls sideways, with keys too.
-/// \param label  what it is, for people who hear the page
-std::string scrollable(const std::string& label, const std::string& html);
 
 /// The required checks that failed, for the banner: the first three by name.
 std::string failuresHtml(const Report& report);

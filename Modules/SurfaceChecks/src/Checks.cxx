@@ -229,9 +229,15 @@ private:
                 "a triangle soup: no two triangles share a vertex, " +
                     counted(facts_.duplicates.vertexCount, "vertex repeats", "vertices repeat") +
                     " the place of another; merge vertices at the same place");
+        } else if (facts_.holes.empty()) {
+            addDefect(kClosed, TopologyDefect::BoundaryEdge, "boundary edge", "boundary edges");
         } else {
-            addDefect(kClosed, TopologyDefect::BoundaryEdge, "boundary edge (a hole)",
-                      "boundary edges (a hole)");
+            const Hole& longest = facts_.holes.front();
+            add(kClosed, false,
+                counted(facts_.topology.count(TopologyDefect::BoundaryEdge), "boundary edge") +
+                    ", " + counted(std::ssize(facts_.holes), "hole") + "; the longest, " +
+                    formatLength(longest.lengthMm, 1) + " mm round, around " +
+                    at(longest.middleMm));
         }
         addDefect(kEdges, TopologyDefect::NonManifoldEdge, "edge in more than two triangles",
                   "edges in more than two triangles");

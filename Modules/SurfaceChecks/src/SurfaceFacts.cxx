@@ -56,6 +56,9 @@ SurfaceFacts measureSurface(const TriangleMesh& given, const SizeLimits& sizeLim
         }
     }
     facts.duplicates = findDuplicates(mesh);
+    if (facts.topology.count(TopologyDefect::BoundaryEdge) > 0 && !facts.isSoup()) {
+        facts.holes = findHoles(mesh);
+    }
     facts.intersections = findSelfIntersections(mesh, {.maxPairs = maxPairs});
     if (!facts.intersections.pairs.empty()) {
         const auto& [a, b, c] = mesh.triangles[facts.intersections.pairs.front()[0]];

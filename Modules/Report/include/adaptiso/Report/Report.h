@@ -29,9 +29,10 @@ ReportColor surfaceColor(std::size_t n);
 
 /// Verdict at the top of a report.
 enum class ReportVerdict {
-    Passed,  ///< all that was required holds
-    Failed,  ///< something that was required does not
-    Done     ///< nothing was to be judged
+    Passed,     ///< all that was required holds
+    Failed,     ///< something that was required does not
+    Done,       ///< nothing was to be judged
+    Unfinished  ///< some of what was to be done is not done yet
 };
 
 enum class ReportOutcome {

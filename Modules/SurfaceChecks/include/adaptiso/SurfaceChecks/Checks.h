@@ -27,7 +27,8 @@ struct SurfaceFacts {
                                               ///< twice
     DuplicateReport duplicates;
     SelfIntersections intersections;
-    Vec3 firstCrossingMm;  ///< the middle of the first triangle that crosses another
+    std::vector<Hole> holes;  ///< of a soup none
+    Vec3 firstCrossingMm;     ///< the middle of the first triangle that crosses another
     ShapeReport shape;
     SizeReport size;
     SolidAngleCriterion solidAngle;
