@@ -160,7 +160,7 @@ class Balls(MendTest):
         self.assertEqual((report["input"]["genus"], report["output"]["genus"]), (1, 0))
         self.assertEqual((report["found"]["handles"], report["output"]["filledHandles"]), (1, []))
         cut, = report["output"]["cutHandles"]
-        self.assertAlmostEqual(cut["areaMm2"], 8 * 100 * math.sin(math.pi / 8), delta=1)  # of 16 corners
+        self.assertAlmostEqual(cut["areaMm2"], 8 * 100 * math.sin(math.pi / 8), delta=2)  # of 16 corners, on a chord of 36
         self.assertAlmostEqual(math.hypot(*cut["middleMm"]), 30, delta=1)
         self.assertGreater(report["output"]["verification"]["samples"], 0)
         self.assertIn("1 handle cut, ", self.run_mend("ring.off", "--ball", "--dry-run").stdout)
