@@ -11,7 +11,9 @@
 #include "Common/Warnings.h"
 #include "Run.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/SurfacePipeline/MendJson.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso::mender {
@@ -52,17 +54,17 @@ void warnOfSize(const TriangleMesh& mesh, MendRun& run) {
     if (warning) run.warnings.push_back(*warning);
 }
 
-/// A message of mend() with the names of the command line's options.
-std::string inWordsOfOptions(std::string text) {
+/// A message of mend() with the names of the command line's options, what was found and what helps.
+std::string inWordsOfOptions(std::string text, const std::string& found) {
     constexpr std::pair<std::string_view, std::string_view> kWords[] = {
         {"mend: ", ""}, {"maxHoleMm", "--max-hole"}, {"maxErrorMm", "--max-error"}};
     for (const auto& [ours, theirs] : kWords) {
         const std::size_t at = text.find(ours);
         if (at != std::string::npos) text.replace(at, ours.size(), theirs);
     }
-    if (text.find("--max-hole") != std::string::npos) {
-        text += "; a larger --max-hole closes it, --open leaves it open";
-    }
+    const bool isOfHole = text.find("--max-hole") != std::string::npos;
+    if (!found.empty()) text += "; found: " + found;
+    if (isOfHole) text += "; a larger --max-hole closes it, --open leaves it open";
     return text;
 }
 
@@ -73,11 +75,16 @@ TriangleMesh mendSurface(const TriangleMesh& mesh, MendRun& run) {
     try {
         Mended result = mend(mesh, options);
         run.statistics = std::move(result.statistics);
+        run.isSearched = true;
         return std::move(result.mesh);
+    } catch (const MendRefusal& refusal) {
+        run.statistics = refusal.statistics;
+        run.isSearched = true;
+        run.refusal = inWordsOfOptions(refusal.what(), joined(mendFaultTexts(run.statistics)));
     } catch (const InvalidInput& refusal) {
-        run.refusal = inWordsOfOptions(refusal.what());
-        return {};
+        run.refusal = inWordsOfOptions(refusal.what(), {});
     }
+    return {};
 }
 
 bool isGzip(const fs::path& file) {

@@ -25,6 +25,7 @@ struct MendRun : ProgramRun {
     SurfaceSummary input{};
     SurfaceSummary output{};  ///< the result; triangles 0 if there is none
     MendStatistics statistics{};
+    bool isSearched = false;                     ///< for faults: `statistics` has them
     std::string refusal{};                       ///< why it can't be mended as asked
     bool isCopy = false;                         ///< the output has the input's bytes
     double roundingMm = 0;                       ///< largest move of a point by the output's digits

@@ -20,6 +20,9 @@ void checkCombinations(const MendCommand& command) {
     if (command.isDryRun && command.scale.isWanted()) {
         throw UsageError("--scale, --fit: are for the file to write, not with --dry-run");
     }
+    if (command.aim.removesHandles && command.aim.leavesHolesOpen) {
+        throw UsageError("--ball takes closed surfaces: not with --open");
+    }
 }
 
 constexpr const char* kFooter = R"(Examples:
@@ -29,6 +32,8 @@ constexpr const char* kFooter = R"(Examples:
   adaptiso-mend lh.pial --max-error 0.1 -o mended/lh.pial
   adaptiso-mend mask.stl --max-hole 20 -o mask.vtp
       holes up to 20 mm wide are closed; --open leaves wider ones open
+  adaptiso-mend skull.ply --ball -o ball.ply
+      handles are cut or filled, whichever takes the smaller disc
 
 Exit codes: 0 mended, or sound already, 1 it can't be mended as asked, or a
 warning with --strict, 2 wrong usage, 3 bad input (or no memory or disk left),

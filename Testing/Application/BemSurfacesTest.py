@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 from support import CHECK_FAILED, OK, main
-from bemSupport import CHECK, NAMES, QUICK, RADII, BemTest, read_tri, volume
+from bemSupport import CHECK, NAMES, RADII, BemTest, read_tri, volume
 from headDefects import write_off
 
 
@@ -109,13 +109,17 @@ class Surfaces(BemTest):
         self.bem("--surfaces", *names, "-o", "kept")
         self.assertNotIn("surface-moved", [w["code"] for w in self.report("kept")["input"]["warnings"]])
 
-    def test_broken_ones_are_made_anew(self):
+    def test_broken_ones_are_mended_alone(self):
         points, triangles = globe(60)
         names = self.write((points, triangles[5:]), globe(66), globe(72))
-        self.bem("--surfaces", *names, "-o", "model", *QUICK)
+        self.bem("--surfaces", *names, "-o", "model")
         report = self.report()
-        self.assertRegex(" ".join(report["notes"]), "made anew")
+        self.assertRegex(" ".join(report["notes"]), r"inner_skull: mended .*: 9 open border edges; 2 holes closed, .*\(proved\)")
         self.assertTrue(all(check["passed"] for check in report["checks"]))
+        mending, *others = [surface["mending"] for surface in report["surfaces"]]
+        self.assertEqual((len(mending["filled"]), mending["inputToResultMm"], others), (2, 0, [None, None]))
+        for name, radius in zip(NAMES[1:], RADII[1:]):
+            self.assertEqual(read_tri(self.path("model") / f"{name}.tri")[1], globe(radius)[1])
 
     def test_what_cannot_be_guaranteed_gives_the_report_alone_and_says_where(self):
         # the outer skull lies far from the inner one

@@ -26,6 +26,19 @@ def cup(mesh, height):
     return points, [t for t in triangles if max(points[v][2] for v in t) < height]
 
 
+def ring(radius=30, tube=10, steps=36, around=16):
+    """A torus: genus 1."""
+    points = [((radius + tube * math.cos(b)) * math.cos(a), (radius + tube * math.cos(b)) * math.sin(a),
+               tube * math.sin(b)) for a in (2 * math.pi * i / steps for i in range(steps))
+              for b in (2 * math.pi * j / around for j in range(around))]
+    def at(i, j): return i % steps * around + j % around
+    triangles = []
+    for i in range(steps):
+        for j in range(around):
+            triangles += [(at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1))]
+    return points, triangles
+
+
 class MendTest(SimplifyTest):
     def run_mend(self, *arguments):
         return subprocess.run([MEND, *map(str, arguments)], cwd=self.folder, text=True,
@@ -140,13 +153,34 @@ class Values(MendTest):
         self.mend("out.ply", "--dry-run")
 
 
+class Balls(MendTest):
+    def test_a_ring_is_cut_across(self):
+        self.write("ring.off", ring())
+        report = self.mend("ring.off", "--ball", "-o", "ball.off")
+        self.assertEqual((report["input"]["genus"], report["output"]["genus"]), (1, 0))
+        self.assertEqual((report["found"]["handles"], report["output"]["filledHandles"]), (1, []))
+        cut, = report["output"]["cutHandles"]
+        self.assertAlmostEqual(cut["areaMm2"], 8 * 100 * math.sin(math.pi / 8), delta=2)  # of 16 corners, on a chord of 36
+        self.assertAlmostEqual(math.hypot(*cut["middleMm"]), 30, delta=1)
+        self.assertGreater(report["output"]["verification"]["samples"], 0)
+        self.assertIn("1 handle cut, ", self.run_mend("ring.off", "--ball", "--dry-run").stdout)
+        self.assertTrue(self.check("ball.off")["passed"])
+        again = self.mend("ball.off", "--ball", "-o", "again.off")
+        self.assertTrue(again["found"]["sound"] and again["output"]["copied"])
+
+    def test_takes_closed_surfaces(self):
+        self.stays_out(USAGE, "--ball takes closed surfaces", "ring.off", "--ball", "--open", "-o", "out.off")
+
+
 class Refusals(MendTest):
     def test_what_can_not_be_mended_as_asked(self):
         self.write("cup.off", cup(BALL, 20))
         self.stays_out(CHECK_FAILED, "cup.off: can't be mended as asked: a hole near .* more than "
                        "--max-hole, 6.39 mm", "cup.off", "--max-error", 1, "-o", "out.off")
         report = self.mend("cup.off", "--max-error", 1, "-o", "out.off", code=CHECK_FAILED)
-        self.assertEqual((report["passed"], report["output"], report["found"]), (False, None, None))
+        self.assertEqual((report["passed"], report["output"], report["found"]["sound"]), (False, None, False))
+        self.assertIn(f"; found: {report['found']['borderEdges']} open border edges; a larger --max-hole closes it",
+                      report["error"]["text"])
         report = self.mend("cup.off", "--max-error", 1, "--open", "-o", "open.off")
         self.assertEqual((len(report["output"]["leftOpen"]), report["output"]["closed"]), (1, False))
         self.mend("cup.off", "--max-error", 1, "--max-hole", 120, "-o", "closed.off")
@@ -194,6 +228,7 @@ class Readme(MendTest):
         small = icosphere(40, 2)
         write_stl(self.path("two.stl"), together(small, shifted(small, 30)))
         self.write("cup.off", cup(small, 20))
+        self.write("ring.off", ring())
         self.path("in.ply").write_text(ply(soup(small), "property double height",
                                            [(p[2],) for p in soup(small)[0]]))
         self.mend("in.ply", "-o", "heights.vtp")
@@ -205,7 +240,7 @@ class Readme(MendTest):
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stdout), (0, "the hole is wider\n"), done.stderr)
         self.assertEqual(set(self.names()) - given, {"one.stl", "plan.json", "mended.vtp",
-                                                     "closed.off", "open.off"})
+                                                     "closed.off", "open.off", "ball.off"})
 
 
 if __name__ == "__main__":

@@ -34,6 +34,14 @@ class Mend(unittest.TestCase):
         self.assertLessEqual(found["result_to_input"], 0.3)
         self.assertLessEqual(found["input_to_result"], 0.3)
 
+    def test_handles_are_cut(self):
+        i, j, k = np.indices((32, 32, 12)) - np.array([15.5, 15.5, 5.5])[:, None, None, None]
+        ring = adaptiso.surface(-np.hypot(np.hypot(i, j) - 9, k), -3, max_error=0.1)
+        cut = adaptiso.mend(ring, ball=True)
+        self.assertEqual((cut.report["handles"], len(cut.report["cut_handles"])), (1, 1))
+        self.assertAlmostEqual(cut.report["cut_handles"][0]["area"] / (9 * np.pi), 1, delta=0.05)
+        self.assertTrue(adaptiso.check(cut))
+
     def test_a_sound_mesh_stays_as_it_is(self):
         whole = ball()
         mended = adaptiso.mend(whole)

@@ -66,6 +66,8 @@ export interface MendOptions extends RunOptions {
   maxHoleMm?: number;
   /** Leave wider holes open; otherwise they are refused. */
   open?: boolean;
+  /** Cut or fill every handle. */
+  ball?: boolean;
 }
 /** adaptiso-mend: a sound solid of any mesh. */
 export function mend(surface: MeshInput, options?: MendOptions): Promise<MeshResult>;

@@ -252,8 +252,8 @@ export async function simplify(surface, options = {}) {
   return makeSurface("simplify", [], await meshFile(surface), options);
 }
 
-export async function mend(surface, { maxHoleMm, open = false, ...options } = {}) {
-  return makeSurface("mend", [...(maxHoleMm === undefined ? [] : ["--max-hole", String(maxHoleMm)]), ...(open ? ["--open"] : [])],
+export async function mend(surface, { maxHoleMm, open = false, ball = false, ...options } = {}) {
+  return makeSurface("mend", [...(maxHoleMm === undefined ? [] : ["--max-hole", String(maxHoleMm)]), ...(open ? ["--open"] : []), ...(ball ? ["--ball"] : [])],
     await meshFile(surface), options);
 }
 

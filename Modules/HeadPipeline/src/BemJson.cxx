@@ -5,6 +5,7 @@
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/TetrahedraJson.h"
 #include "adaptiso/Json/OptionsJson.h"
+#include "adaptiso/SurfacePipeline/MendJson.h"
 
 namespace adaptiso {
 namespace {
@@ -18,6 +19,15 @@ Json remeshJson(const BemSurface& surface) {
     if (!surface.remesh) return nullptr;
     return {{"meanVertexDistanceMm", number(surface.remesh->meanVertexDistanceMm)},
             {"maximumVertexDistanceMm", number(surface.remesh->maximumVertexDistanceMm)}};
+}
+
+Json mendingJson(const BemSurface& surface) {
+    if (!surface.mending) return nullptr;
+    Json json = mendFaultsJson(*surface.mending);
+    json["resultToInputMm"] = number(surface.mending->resultToInputMm);
+    json["inputToResultMm"] = number(surface.mending->inputToResultMm);
+    json.update(mendPlacesJson(*surface.mending));
+    return json;
 }
 
 Json surfaceJson(const std::string& name, const BemSurface& surface) {
@@ -43,6 +53,7 @@ Json surfaceJson(const std::string& name, const BemSurface& surface) {
           {"median", number(shape.angleDeg.median)}}},
         {"segmentedVolumeMm3", orNull(surface.segmentedMm3)},
         {"seenShare", surface.seen ? number(surface.seen->share) : Json(nullptr)},
+        {"mending", mendingJson(surface)},
         {"remesh", remeshJson(surface)},
         {"nesting",
          {{"movedVertices", surface.move.movedVertices},

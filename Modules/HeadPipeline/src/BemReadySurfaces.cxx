@@ -4,11 +4,14 @@
 #include <tuple>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Extraction/Components.h"
 #include "adaptiso/HeadPipeline/BemChecks.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/SurfacePipeline/MendJson.h"
 
 namespace adaptiso {
 namespace {
@@ -83,26 +86,62 @@ void note(BemModel& model, std::size_t n, const std::string& text) {
     model.notes.push_back(bemSurfaceName(n, model.options.surfaceCount()) + ": " + text);
 }
 
-/// Returns the work that a surface needs. Does at once what leaves it in its place: drops useless
-/// triangles, merges vertices, turns it outward.
-Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model) {
+/// Mends a surface by itself: its largest piece, without cavities. One with a handle is not taken:
+/// a disc that cuts or fills it leaves horns or pits, where BallTopology.h closes whole tunnels.
+/// \return  false where it is no ball then
+bool mendAlone(std::size_t n, TriangleMesh& mesh, BemModel& model, const BemHooks& hooks) {
+    MendOptions options;
+    options.maxHoleMm = norm(boundingBox(mesh).size());
+    options.progress = hooks.progress;
+    Mended mended;
+    try {
+        mended = mend(mesh, options);
+    } catch (const InvalidInput&) {
+        return false;
+    }
+    TriangleMesh piece = selectComponents(mended.mesh, {.largestOnly = true, .fillCavities = true});
+    if (!isBall(piece)) return false;
+    MendStatistics inRas = mended.statistics;
+    for (auto* places : {&inRas.filled, &inRas.inner, &inRas.thin}) {
+        for (MendedPlace& place : *places) {
+            place.middleMm = {-place.middleMm.x, -place.middleMm.y, place.middleMm.z};
+        }
+    }
+    std::vector<std::string> texts = mendFaultTexts(inRas);
+    const std::vector<std::string> done = mendPlaceTexts(inRas);
+    texts.insert(texts.end(), done.begin(), done.end());
+    const std::int64_t left = std::ssize(mended.mesh.triangles) - std::ssize(piece.triangles);
+    if (left > 0) texts.push_back(formatCount(left) + " triangles of other pieces left out");
+    texts.push_back(mendDistanceText(inRas, 0));
+    note(model, n, "mended (places in mm RAS): " + joined(texts, "; "));
+    model.surfaces[n].mending = std::move(mended.statistics);
+    mesh = std::move(piece);
+    return true;
+}
+
+/// Returns the work that a surface needs. Does at once what leaves it in its place, but for what a
+/// note lists: drops useless triangles, merges vertices, mends, turns it outward.
+Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model, const BemHooks& hooks) {
     const std::size_t vertices = mesh.points.size();
     const std::int64_t dropped = dropUseless(mesh);
     if (dropped > 0) note(model, n, "dropped " + formatCount(dropped) + " invalid triangles");
     if (mesh.triangles.empty()) throw InvalidInput("a surface holds no triangle");
     if (!isBall(mesh)) {
         TriangleMesh whole = merged(mesh), main = withoutIslands(whole);
-        if (!isBall(main)) return Need::NewSolid;
-        const bool hasIslands = main.triangles.size() < whole.triangles.size();
-        note(model, n,
-             hasIslands ? formatCount(std::ssize(whole.triangles) - std::ssize(main.triangles)) +
-                              " triangles of small pieces left out"
-                        : "vertices at the same place merged");
-        mesh = std::move(main);
+        if (isBall(main)) {
+            const bool hasIslands = main.triangles.size() < whole.triangles.size();
+            note(model, n,
+                 hasIslands
+                     ? formatCount(std::ssize(whole.triangles) - std::ssize(main.triangles)) +
+                           " triangles of small pieces left out"
+                     : "vertices at the same place merged");
+            mesh = std::move(main);
+        }
     } else if (mesh.points.size() < vertices) {
         note(model, n, "unused vertices left out");
     }
-    if (!findSelfIntersections(mesh, {.maxPairs = 0}).isClear()) return Need::NewSolid;
+    const bool isSound = isBall(mesh) && findSelfIntersections(mesh, {.maxPairs = 0}).isClear();
+    if (!isSound && !mendAlone(n, mesh, model, hooks)) return Need::NewSolid;
     if (enclosedVolume(mesh) < 0) {
         flipOrientation(mesh);
         note(model, n, "was inside out and has been turned");
@@ -132,29 +171,31 @@ void findWrongSizes(const std::vector<TriangleMesh>& surfaces, BemModel& model) 
 std::vector<TriangleMesh> mendSurfaces(std::vector<TriangleMesh> surfaces, BemModel& model,
                                        const BemHooks& hooks) {
     std::vector<Need> needs;
+    std::vector<std::size_t> vertices;
+    model.surfaces.resize(surfaces.size());
+    for (const TriangleMesh& surface : surfaces) vertices.push_back(surface.points.size());
     hooks.stage("check", [&] {
         for (std::size_t n = 0; n < surfaces.size(); ++n) {
-            needs.push_back(tidied(n, surfaces[n], model));
+            needs.push_back(tidied(n, surfaces[n], model, hooks));
         }
         findWrongSizes(surfaces, model);
     });
-    model.surfaces.resize(surfaces.size());
     if (!model.hasModel()) return surfaces;
     if (std::find(needs.begin(), needs.end(), Need::NewSolid) == needs.end()) {
         for (std::size_t n = 0; n < surfaces.size(); ++n) {
             if (needs[n] != Need::NewTriangles) continue;
             model.surfaces[n].denseTriangles = std::ssize(surfaces[n].triangles);
             constexpr std::int64_t kLeast = 42, kMost = 10'000;  // what MNE can work with
-            model.surfaces[n].ownVertices =
-                std::clamp<std::int64_t>(std::ssize(surfaces[n].points), kLeast, kMost);
+            model.surfaces[n].ownVertices = std::clamp<std::int64_t>(
+                std::min(surfaces[n].points.size(), vertices[n]), kLeast, kMost);
         }
         return surfaces;
     }
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
         if (needs[n] != Need::NewSolid) continue;
         note(model, n,
-             "is not one closed surface of genus 0 that does not cross itself: all are "
-             "made anew from the solids that they bound");
+             "can't be mended to one closed surface of genus 0 that does not cross itself: all "
+             "are made anew from the solids that they bound");
     }
     model.surfaces.clear();
     BoundaryOptions boundaries = model.options.boundaries;

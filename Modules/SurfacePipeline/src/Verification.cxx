@@ -40,12 +40,14 @@ void requireWithin(double measuredMm, double boundMm, const TriangleMesh& surfac
                         ", not " + formatNumber(boundMm));
 }
 
-DistanceReport sampledDistance(const TriangleMesh& surface, const TriangleMesh& original) {
+DistanceReport sampledDistance(const TriangleMesh& surface, const TriangleMesh& original,
+                               bool isSymmetric) {
     constexpr std::int64_t kEach = 4, kFewest = 2000, kMost = 200'000;
     const std::int64_t triangles =
         std::max(std::ssize(surface.triangles), std::ssize(original.triangles));
-    return surfaceDistance(surface, original,
-                           {.samples = std::clamp(kEach * triangles, kFewest, kMost)});
+    return surfaceDistance(
+        surface, original,
+        {.samples = std::clamp(kEach * triangles, kFewest, kMost), .isSymmetric = isSymmetric});
 }
 
 Verification verifyDistance(const TriangleMesh& surface, const TriangleMesh& original,

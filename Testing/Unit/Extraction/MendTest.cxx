@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
@@ -285,6 +286,47 @@ TEST(Mend, RefusesWideHolesOrLeavesThemOpen) {
     EXPECT_TRUE(topology.isManifold() && topology.isOriented() && !topology.isClosed());
 }
 
+/// The lattice of the bound would have some hundred thousand cells.
+TEST(Mend, RefusesWideRaggedHolesBeforeTheLongWork) {
+    TriangleMesh bowl = bare(icosphere(5));
+    std::erase_if(bowl.triangles, [&](const Triangle& t) { return bowl.points[t[0]].z > 0.2; });
+    bowl.triangles.push_back({bowl.triangles[0][0], bowl.triangles[40][0], bowl.triangles[90][0]});
+    try {
+        mend(bowl, within(0.002));
+        FAIL();
+    } catch (const MendRefusal& refusal) {
+        EXPECT_NE(std::string(refusal.what()).find("a hole near"), std::string::npos);
+        EXPECT_GT(refusal.statistics.borderEdges, 0);
+        EXPECT_EQ(refusal.statistics.cells, 0);
+    }
+}
+
+/// A Moebius band: of one side, open.
+TEST(Mend, RefusesAMoebiusBandBeforeTheLongWork) {
+    TriangleMesh band;
+    constexpr int kSteps = 80;
+    for (int n = 0; n < kSteps; ++n) {
+        const double t = 2 * std::numbers::pi * n / kSteps;
+        for (const double side : {-1.0, 1.0}) {
+            const double r = 5 + side * std::cos(t / 2);
+            band.points.push_back({r * std::cos(t), r * std::sin(t), side * std::sin(t / 2)});
+        }
+    }
+    for (int n = 0; n < kSteps; ++n) {
+        const VertexId a = 2 * n, b = a + 1, c = n + 1 < kSteps ? a + 2 : 1,
+                       d = n + 1 < kSteps ? a + 3 : 0;
+        band.triangles.push_back({a, c, b});
+        band.triangles.push_back({b, c, d});
+    }
+    try {
+        mend(band, within(0.003));
+        FAIL();
+    } catch (const MendRefusal& refusal) {
+        EXPECT_GT(refusal.statistics.badEdges, 0);
+        EXPECT_EQ(refusal.statistics.cells, 0);
+    }
+}
+
 TEST(Mend, LeavesRaggedHolesOpenAsManifold) {
     for (unsigned seed = 0; seed < 4; ++seed) {
         TriangleMesh sieve = bare(icosphere(4));
@@ -313,6 +355,101 @@ TEST(Mend, RefusesWhatEnclosesNothing) {
     EXPECT_THROW(mend(planeMesh(4, 1), within(0.05)), InvalidInput);
     EXPECT_THROW(mend({}), InvalidInput);
     EXPECT_THROW(mend(cubeMesh(), within(0)), InvalidInput);
+}
+
+MendOptions asBalls(double maxErrorMm) {
+    MendOptions options = within(maxErrorMm);
+    options.removesHandles = true;
+    return options;
+}
+
+/// Every piece is a ball; what is new lies near the input but for the two sides of each disc.
+void expectBalls(const TriangleMesh& input, const Mended& mended, std::size_t cut,
+                 std::size_t filled) {
+    expectMended(mended);
+    EXPECT_EQ(checkTopology(mended.mesh).genus(), 0);
+    const MendStatistics& s = mended.statistics;
+    EXPECT_EQ(s.cutHandles.size(), cut);
+    EXPECT_EQ(s.filledHandles.size(), filled);
+    EXPECT_EQ(static_cast<std::size_t>(s.handles), cut + filled);
+    Mended listed = mended;
+    for (const auto* discs : {&s.cutHandles, &s.filledHandles}) {
+        for (MendedPlace disc : *discs) {
+            disc.areaMm2 *= 2;
+            listed.statistics.filled.push_back(disc);
+        }
+    }
+    expectBounds(input, listed);
+}
+
+TEST(MendToBalls, LeavesBallsAsTheyAre) {
+    const TriangleMesh mesh = merged({icosphere(3), icosphere(2, {5, 0, 0})});
+    const Mended mended = mend(mesh, asBalls(0.01));
+    EXPECT_TRUE(mended.statistics.wasSound);
+    EXPECT_EQ(mended.mesh, mesh);
+}
+
+TEST(MendToBalls, CutsARingAcross) {
+    const TriangleMesh ring = bare(torusMesh(60, 24, 3, 1));
+    const Mended mended = mend(ring, asBalls(0.02));
+    expectBalls(ring, mended, 1, 0);
+    const double disc = 12 * std::sin(std::numbers::pi / 12);  // of 24 corners
+    EXPECT_NEAR(mended.statistics.cutHandles[0].areaMm2, disc, 0.02);
+    EXPECT_NEAR(norm(mended.statistics.cutHandles[0].middleMm), 3, 0.05);
+    const double lost = enclosedVolume(ring) - enclosedVolume(mended.mesh);
+    EXPECT_GT(lost, 0);
+    EXPECT_LE(lost, 0.02 * disc);
+    EXPECT_GT(mended.statistics.keptTriangles, std::ssize(ring.triangles) * 9 / 10);
+    const ThreadLimitGuard one(1);
+    EXPECT_EQ(mend(ring, asBalls(0.02)).mesh, mended.mesh);
+}
+
+TEST(MendToBalls, FillsANarrowTunnel) {
+    const TriangleMesh ring = bare(torusMesh(60, 40, 3, 2.6));
+    const Mended mended = mend(ring, asBalls(0.02));
+    expectBalls(ring, mended, 0, 1);
+    EXPECT_NEAR(mended.statistics.filledHandles[0].areaMm2, std::numbers::pi * 0.16, 0.01);
+    EXPECT_LE(norm(mended.statistics.filledHandles[0].middleMm), 0.1);
+    EXPECT_GT(enclosedVolume(mended.mesh), enclosedVolume(ring));
+}
+
+TEST(MendToBalls, CutsBothHolesOfADoubleRingThatCrossesItself) {
+    const TriangleMesh rings = merged(
+        {bare(torusMesh(40, 20, 3, 1)), translated(bare(torusMesh(40, 20, 3, 1)), {7, 0.1, 0})});
+    const Mended mended = mend(rings, asBalls(0.05));
+    expectBalls(rings, mended, 2, 0);
+    EXPECT_EQ(nestingOf(mended.mesh), "()");
+}
+
+TEST(MendToBalls, CutsAThinHandleOfABall) {
+    const TriangleMesh handled = merged(
+        {bare(icosphere(4, {}, 3)), translated(bare(torusMesh(40, 12, 1, 0.1)), {3, 0.01, 0.02})});
+    const Mended mended = mend(handled, asBalls(0.05));
+    expectBalls(handled, mended, 1, 0);
+    EXPECT_NEAR(mended.statistics.cutHandles[0].areaMm2, std::numbers::pi * 0.01, 0.003);
+    EXPECT_GT(norm(mended.statistics.cutHandles[0].middleMm), 3);
+}
+
+/// A box drilled nine times, as bone is.
+TEST(MendToBalls, FillsManyTunnelsAtOnce) {
+    TriangleMesh sieve = cubeMesh({0, 0, 0}, {6, 6, 1});
+    for (int n = 0; n < 9; ++n) {
+        const double x = 1.02 + 2 * (n % 3), y = 1.01 + 2 * (n / 3);
+        TriangleMesh drill = cubeMesh({x - 0.2, y - 0.2, -0.5}, {x + 0.2, y + 0.2, 1.5});
+        flipOrientation(drill);
+        sieve = merged({sieve, drill});
+    }
+    const Mended mended = mend(sieve, asBalls(0.05));
+    EXPECT_EQ(checkTopology(mended.mesh).genus(), 0);
+    expectMended(mended);
+    EXPECT_EQ(mended.statistics.handles, 9);
+    EXPECT_EQ(mended.statistics.filledHandles.size(), 9u);
+}
+
+TEST(MendToBalls, RefusesOpenSurfaces) {
+    MendOptions options = asBalls(0.01);
+    options.leavesHolesOpen = true;
+    EXPECT_THROW(mend(icosphere(2), options), InvalidInput);
 }
 
 /// Holes, crossings, flips and doubles at random; the distances are proved again from outside.

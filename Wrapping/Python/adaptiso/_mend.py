@@ -43,12 +43,13 @@ def mend(mesh: Any, faces: Any = None, *, input_coordinates: Optional[str] = Non
     Mesh
         In the frame of `mesh`. ``report`` has ``was_sound``; what was found: ``border_edges``,
         ``bad_edges``, ``bad_vertices``, ``crossing_triangles``, ``flipped_triangles``,
-        ``degenerate_triangles``, ``duplicate_triangles`` and ``merged_points``; ``kept_triangles``
+        ``degenerate_triangles``, ``duplicate_triangles``, ``merged_points`` and, by `ball`,
+        ``handles``; ``kept_triangles``
         and ``cut_triangles`` of `mesh`; lists of the places ``filled`` (holes closed),
-        ``left_open``, ``inner`` (dropped: inside the solid) and ``thin`` (dropped: too thin for the
-        bound), each with ``middle``, ``span`` and ``area``; and ``max_error``. No vertex or point
-        of the result is farther than ``result_to_input`` from `mesh`, but for those of ``filled``;
-        no point of `mesh` is farther than ``input_to_result`` from the result, but for ``inner``
+        ``left_open``, ``inner`` (dropped: inside the solid), ``thin`` (dropped: too thin for the
+        bound), ``cut_handles`` and ``filled_handles``, each with ``middle``, ``span`` and ``area``;
+        and ``max_error``. No vertex or point of the result is farther than ``result_to_input`` from
+        `mesh`, but for those of ``filled`` and the discs at handles; no point of `mesh` is farther than ``input_to_result`` from the result, but for ``inner``
         and ``thin``. ``warnings`` are lines with a ``code``, as Documentation/Warnings.md lists
         them.
 
@@ -57,7 +58,7 @@ def mend(mesh: Any, faces: Any = None, *, input_coordinates: Optional[str] = Non
     Error
         A mesh without a triangle that has an area, with indices out of range or coordinates that
         are not finite; one that encloses nothing, has a hole wider than `max_hole`, or can't be
-        mended within `max_error`; an option that can't be used.
+        mended within `max_error`, or has a handle without a flat disc; an option that can't be used.
 
     Examples
     --------

@@ -44,6 +44,7 @@ class MendOptions(TypedDict, total=False):
     max_error: Optional[float]
     max_hole: Optional[float]
     open: Optional[bool]
+    ball: Optional[bool]
 
 
 class LabelsOptions(TypedDict, total=False):

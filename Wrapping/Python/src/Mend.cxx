@@ -41,12 +41,15 @@ py::dict toDict(const MendStatistics& statistics) {
     found["bad_edges"] = statistics.badEdges;
     found["bad_vertices"] = statistics.badVertices;
     found["crossing_triangles"] = statistics.crossingTriangles;
+    found["handles"] = statistics.handles;
     found["kept_triangles"] = statistics.keptTriangles;
     found["cut_triangles"] = statistics.cutTriangles;
     found["filled"] = toList(statistics.filled);
     found["left_open"] = toList(statistics.leftOpen);
     found["inner"] = toList(statistics.inner);
     found["thin"] = toList(statistics.thin);
+    found["cut_handles"] = toList(statistics.cutHandles);
+    found["filled_handles"] = toList(statistics.filledHandles);
     found["max_error"] = statistics.maxErrorMm;
     found["result_to_input"] = statistics.resultToInputMm;
     found["input_to_result"] = statistics.inputToResultMm;
@@ -56,7 +59,10 @@ py::dict toDict(const MendStatistics& statistics) {
 /// What mend() says, by Python's names.
 std::string inWordsOfArguments(std::string text) {
     constexpr std::pair<std::string_view, std::string_view> kNames[] = {
-        {"maxHoleMm", "max_hole"}, {"maxErrorMm", "max_error"}};
+        {"maxHoleMm", "max_hole"},
+        {"maxErrorMm", "max_error"},
+        {"removesHandles", "ball"},
+        {"leavesHolesOpen", "open"}};
     for (const auto& [ours, theirs] : kNames) {
         const std::size_t at = text.find(ours);
         if (at != std::string::npos) text.replace(at, ours.size(), theirs);

@@ -6,6 +6,7 @@
 
 #include "adaptiso/Core/PolygonTriangulation.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "mend/PlanarFiller.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -74,9 +75,18 @@ void addCaps(MendInput& input) {
         const auto cap = triangulatePolygon(seenFlat(mesh.points, ring));
         std::vector<Triangle> triangles;
         for (const auto& [a, b, c] : cap) triangles.push_back({ring[a], ring[b], ring[c]});
-        const bool hasArea = std::none_of(triangles.begin(), triangles.end(),
-                                          [&](const Triangle& t) { return isDegenerate(mesh, t); });
-        if (!hasArea) continue;
+        const auto haveArea = [&] {
+            return std::none_of(triangles.begin(), triangles.end(),
+                                [&](const Triangle& t) { return isDegenerate(mesh, t); });
+        };
+        if (!haveArea()) {
+            Vec3 normal;
+            for (const auto& [a, b, c] : triangles) {
+                normal += areaVector2(mesh.points[a], mesh.points[b], mesh.points[c]);
+            }
+            flipSlivers(mesh.points, normalized(normal), triangles);
+            if (!haveArea()) continue;
+        }
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
         input.capOf.insert(input.capOf.end(), triangles.size(), caps++);
     }

@@ -16,6 +16,7 @@
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "mend/HandleCuts.h"
 #include "mend/MendAssembly.h"
 #include "mend/MendDistances.h"
 #include "mend/MendInput.h"
@@ -55,6 +56,9 @@ double checkedBound(const MendOptions& options, double diagonal) {
     }
     if (options.maxHoleMm && !(*options.maxHoleMm >= 0)) {
         throw InvalidInput("mend: maxHoleMm must not be negative");
+    }
+    if (options.removesHandles && options.leavesHolesOpen) {
+        throw InvalidInput("mend: removesHandles takes a closed surface: not with leavesHolesOpen");
     }
     return bound;
 }
@@ -193,7 +197,7 @@ void splitFans(TriangleMesh& mesh) {
 }
 
 /// Refuses a hole that is too wide before work begins, where a cap closes it.
-void requireNarrowHoles(const MendInput& input, double boundMm, double maxHoleMm) {
+void requireNarrowCaps(const MendInput& input, double boundMm, double maxHoleMm) {
     if (input.capOf.empty()) return;
     const TriangleMesh given = input.given();
     const detail::NearnessProof proof(given, boundMm);
@@ -209,15 +213,20 @@ void requireNarrowHoles(const MendInput& input, double boundMm, double maxHoleMm
     }
 }
 
-/// Lists the holes that were closed; refuses or opens those that are too wide.
-void judgeHoles(MendAssembly& assembly, double maxHoleMm, bool leavesOpen,
-                MendStatistics& statistics) {
+/// What closes holes, the widest first.
+auto filledPlaces(const MendAssembly& assembly) {
     std::vector<std::uint8_t> isFilled(assembly.source.size());
     for (std::size_t t = 0; t < isFilled.size(); ++t) {
         isFilled[t] = assembly.source[t] == MendSource::Filled ? 1 : 0;
     }
+    return detail::connectedPlaces(assembly.mesh, isFilled);
+}
+
+/// Lists the holes that were closed; refuses or opens those that are too wide.
+void judgeHoles(MendAssembly& assembly, double maxHoleMm, bool leavesOpen,
+                MendStatistics& statistics) {
     std::vector<std::uint8_t> isOpened(assembly.source.size());
-    for (auto& [place, triangles] : detail::connectedPlaces(assembly.mesh, isFilled)) {
+    for (auto& [place, triangles] : filledPlaces(assembly)) {
         if (place.spanMm <= maxHoleMm) {
             statistics.filled.push_back(place);
             continue;
@@ -276,25 +285,56 @@ bool mendIn(MendRegion& region, const MendInput& input, const detail::WindingFie
     return false;
 }
 
-}  // namespace
+/// Refuses what a lattice eight times as coarse shows: a hole that is too wide, no inside.
+void rehearse(const MendInput& input, const AabbTree& tree, const detail::WindingField& field,
+              const BoundingBox& box, double boundMm, double maxHoleMm) {
+    const double roughMm = std::min(8 * boundMm, maxHoleMm / 4);
+    const bool isOpen = std::any_of(input.edges.begin(), input.edges.end(),
+                                    [](const MendInput::Edge& e) { return !e.isSound; });
+    if (!isOpen || roughMm < 2 * boundMm) return;
+    const MendLattice lattice(box, spacingFor(roughMm), kShifts[0]);
+    MendRegion region(input, tree, field, lattice);
+    region.addFaults();
+    MendAssembly assembly;
+    if (!mendIn(region, input, field, lattice, {}, assembly)) return;
+    detail::findBridges(input, lattice, roughMm, assembly);
+    const auto places = filledPlaces(assembly);
+    if (!places.empty() && places[0].first.spanMm > maxHoleMm + 2 * roughMm) {
+        refuseHole(places[0].first, maxHoleMm);
+    }
+}
 
-Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
-    if (mesh.triangles.empty()) throw InvalidInput("mend: the mesh has no triangle");
-    detail::requireMendable(mesh);
-    BoundingBox box = BoundingBox::empty();  // of points that are used
-    for (std::int64_t t = 0; t < std::ssize(mesh.triangles); ++t)
-        box.add(boxOf(cornersOf(mesh, t)));
-    const double diagonal = norm(box.size());
-    Mended result;
-    MendStatistics& statistics = result.statistics;
-    statistics.maxErrorMm = checkedBound(options, diagonal);
-    requireDigits(box, diagonal, statistics.maxErrorMm);
-    const MendInput input = detail::prepareInput(mesh, statistics);
+/// Removes handles, and counts what that moves.
+void makeBalls(MendAssembly& assembly, const BoundingBox& box, MendStatistics& statistics) {
+    const auto gone = detail::removeHandles(
+        assembly, statistics.maxErrorMm - statistics.inputToResultMm, statistics);
+    if (gone.stuckMm) {
+        throw InvalidInput("mend: a handle near " + textOf(*gone.stuckMm) +
+                           " can't be cut or filled by a flat disc");
+    }
+    statistics.inputToResultMm += gone.movedMm;
+    // points of cut edges are rounded
+    statistics.resultToInputMm += 1e-15 * (norm(box.minimum) + norm(box.maximum));
+}
+
+/// mend() of a prepared input. `statistics` holds what was found.
+TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, const BoundingBox& box,
+                          const MendOptions& options, MendStatistics& statistics) {
+    if (input.oneSidedMm) {
+        throw InvalidInput("mend: the surface is one-sided, as a Moebius band, near " +
+                           textOf(*input.oneSidedMm) + ", so it has no inside");
+    }
     const AabbTree tree(input.mesh);
     const detail::WindingField field(input.mesh, tree);
-    const double boundMm = statistics.maxErrorMm - statistics.movedMm;
-    const double maxHoleMm = options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * diagonal);
-    if (!options.leavesHolesOpen) requireNarrowHoles(input, boundMm, maxHoleMm);
+    constexpr double kPartBesidesHandles = 0.75;
+    const double boundMm = (options.removesHandles ? kPartBesidesHandles : 1) *
+                           (statistics.maxErrorMm - statistics.movedMm);
+    const double maxHoleMm =
+        options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * norm(box.size()));
+    if (!options.leavesHolesOpen) {
+        requireNarrowCaps(input, boundMm, maxHoleMm);
+        rehearse(input, tree, field, box, boundMm, maxHoleMm);
+    }
     for (std::size_t attempt = 0; attempt < kShifts.size(); ++attempt) {
         const MendLattice lattice(box, spacingFor(boundMm), kShifts[attempt]);
         MendRegion region(input, tree, field, lattice);
@@ -311,12 +351,14 @@ Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
         statistics.cells = std::ssize(region.cells());
         statistics.latticeMm = region.isEmpty() ? 0 : lattice.spacing();
         countOrigins(assembly, input, statistics);
+        if (options.removesHandles) {
+            statistics.handles = checkTopology(assembly.mesh).genus().value_or(0);
+        }
         if (region.isEmpty() && assembly.mesh.triangles.size() == mesh.triangles.size() &&
             assembly.mesh.points.size() == mesh.points.size() &&
-            input.mesh.triangles == mesh.triangles) {
+            input.mesh.triangles == mesh.triangles && statistics.handles == 0) {
             statistics.wasSound = true;
-            result.mesh = mesh;
-            return result;
+            return mesh;
         }
         const double thinMm = 0.99 * (boundMm - std::sqrt(3.0) * lattice.spacing());
         findBridges(input, lattice, boundMm - thinMm, assembly);
@@ -329,12 +371,36 @@ Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
             statistics.maxErrorMm) {
             continue;
         }
-        result.mesh = std::move(assembly.mesh);
+        if (options.removesHandles) {
+            makeBalls(assembly, box, statistics);
+            countOrigins(assembly, input, statistics);
+        }
         if (options.progress) options.progress("mend", 1);
-        return result;
+        return std::move(assembly.mesh);
     }
     throw InvalidInput("mend: could not be mended within " + formatShort(statistics.maxErrorMm) +
                        " mm");
+}
+
+}  // namespace
+
+Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
+    if (mesh.triangles.empty()) throw InvalidInput("mend: the mesh has no triangle");
+    detail::requireMendable(mesh);
+    BoundingBox box = BoundingBox::empty();  // of points that are used
+    for (std::int64_t t = 0; t < std::ssize(mesh.triangles); ++t)
+        box.add(boxOf(cornersOf(mesh, t)));
+    const double diagonal = norm(box.size());
+    Mended result;
+    result.statistics.maxErrorMm = checkedBound(options, diagonal);
+    requireDigits(box, diagonal, result.statistics.maxErrorMm);
+    const MendInput input = detail::prepareInput(mesh, result.statistics);
+    try {
+        result.mesh = mendPrepared(mesh, input, box, options, result.statistics);
+    } catch (const InvalidInput& refusal) {
+        throw MendRefusal(refusal.what(), std::move(result.statistics));
+    }
+    return result;
 }
 
 }  // namespace adaptiso

@@ -349,6 +349,7 @@ struct Sheets {
     std::vector<std::uint32_t> triangles;  ///< sheet after sheet
     std::vector<std::size_t> begin{0};     ///< of each, and the end
     std::vector<std::uint8_t> isClosed;
+    std::vector<std::optional<std::uint32_t>> oddPoint;  ///< of each, where it can't face one way
     std::vector<std::uint8_t> isTurned;  ///< of each triangle: turned round since it was given
 
     std::span<const std::uint32_t> of(std::size_t sheet) const {
@@ -379,6 +380,7 @@ Sheets makeSheetsFaceOneWay(MendInput& input, const Buckets<std::uint32_t>& atEd
         if (isSeen[first] != 0) continue;
         isSeen[first] = 1;
         bool isClosed = true;
+        std::optional<std::uint32_t> oddPoint;
         double turnedArea = 0, area = 0;
         sheets.triangles.push_back(first);
         for (std::size_t n = sheets.begin.back(); n < sheets.triangles.size(); ++n) {
@@ -394,7 +396,10 @@ Sheets makeSheetsFaceOneWay(MendInput& input, const Buckets<std::uint32_t>& atEd
                 const std::uint32_t other = at[0] == t ? at[1] : at[0];
                 const bool isOneWay = runsUpAlong(input, t, e) == runsUpAlong(input, other, e);
                 if (isSeen[other] != 0) {
-                    if (isOneWay) isClosed = false;  // of a Moebius band
+                    if (isOneWay) {  // of a Moebius band
+                        isClosed = false;
+                        oddPoint = input.edges[e].a;
+                    }
                     continue;
                 }
                 isSeen[other] = 1;
@@ -407,6 +412,7 @@ Sheets makeSheetsFaceOneWay(MendInput& input, const Buckets<std::uint32_t>& atEd
         }
         sheets.begin.push_back(sheets.triangles.size());
         sheets.isClosed.push_back(isClosed ? 1 : 0);
+        sheets.oddPoint.push_back(oddPoint);
         if (turnedArea > 0.5 * area) turnSheet(input, sheets, sheets.count() - 1);
     }
     return sheets;
@@ -590,6 +596,11 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
     if (dropCrossingCaps(input)) findEdges(input);
     countCrossing(input, statistics);
     judgeEdges(input, statistics);
+    const bool isOneSided = std::none_of(sheets.oddPoint.begin(), sheets.oddPoint.end(),
+                                         [](const auto& point) { return !point; });
+    if (isOneSided && statistics.borderEdges > 0) {
+        input.oneSidedMm = input.mesh.points[*sheets.oddPoint[0]];
+    }
     input.badVertices = findBadVertices(input);
     statistics.badVertices = std::ssize(input.badVertices);
     return input;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
@@ -34,6 +35,9 @@ struct MendInput {
     std::vector<std::uint32_t> badVertices;  ///< that join triangles by themselves alone
     std::vector<std::array<std::uint32_t, 2>> crossingPairs;  ///< of triangles
     std::vector<std::uint32_t> undecided;  ///< triangles that lie near too many to be tested
+
+    /// Where an open surface can't face one way, if all sheets are such.
+    std::optional<Vec3> oneSidedMm;
 
     /// Triangles of walls that both went, and one of the others with a corner there.
     std::vector<LostPair> lostPairs;

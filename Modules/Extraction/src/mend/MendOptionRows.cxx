@@ -24,7 +24,14 @@ const Options<MendOptions>& mendOptions() {
         option<&MendOptions::leavesHolesOpen>({.name = "open",
                                                .key = "leavesHolesOpen",
                                                .label = "Wider holes left open",
-                                               .help = "Leave wider holes open instead"})};
+                                               .help = "Leave wider holes open instead"}),
+        option<&MendOptions::removesHandles>(
+            {.name = "ball",
+             .key = "removesHandles",
+             .label = "Genus 0",
+             .help =
+                 "Cut or fill every handle, by the smallest flat disc found, so that each piece "
+                 "is of genus 0"})};
     return kRows;
 }
 

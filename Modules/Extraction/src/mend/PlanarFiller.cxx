@@ -27,8 +27,8 @@ double worseShape(const std::vector<Vec3>& points, const Vec3& normal, const Tri
     return worst;
 }
 
-/// Points of a polygon that lie on a line, but for rounding, are joined by none of its
-/// triangles: edges are flipped while that makes the worse of two triangles better.
+}  // namespace
+
 void flipSlivers(const std::vector<Vec3>& points, const Vec3& normal,
                  std::vector<Triangle>& triangles) {
     constexpr int kMostRounds = 64;
@@ -64,8 +64,6 @@ void flipSlivers(const std::vector<Vec3>& points, const Vec3& normal,
         }
     }
 }
-
-}  // namespace
 
 std::optional<std::vector<PlanarGroup>> PlanarFiller::fill(
     const std::vector<Vec3>& points, const Corners& plane,

@@ -16,6 +16,11 @@ struct PlanarGroup {
     std::vector<Triangle> triangles;
 };
 
+/// Points of a plane polygon that lie on a line, but for rounding, are joined by none of its
+/// triangles: edges are flipped while that makes the worse of two triangles better.
+void flipSlivers(const std::vector<Vec3>& points, const Vec3& normal,
+                 std::vector<Triangle>& triangles);
+
 /// Fills loops of points that lie in the plane of a triangle, but for rounding.
 class PlanarFiller {
 public:

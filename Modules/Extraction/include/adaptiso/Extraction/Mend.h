@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
@@ -20,7 +23,9 @@ struct MendOptions {
     /// \pre >= 0
     std::optional<double> maxHoleMm;
     bool leavesHolesOpen = false;  ///< wider holes stay open; otherwise they are refused
-    ProgressCallback progress;     ///< called as the work goes on; may be empty
+    /// Handles are cut or filled, until every piece is of genus 0. \pre not leavesHolesOpen
+    bool removesHandles = false;
+    ProgressCallback progress;  ///< called as the work goes on; may be empty
 
     static constexpr double kPartOfDiagonal = 0.002, kHoleOfDiagonal = 0.05,
                             kLeastOfDiagonal = 1e-5;
@@ -50,6 +55,7 @@ struct MendStatistics {
     std::int64_t badEdges = 0;     ///< in three triangles or more, or between two of a Moebius band
     std::int64_t badVertices = 0;  ///< that join triangles by themselves alone
     std::int64_t crossingTriangles = 0;  ///< that cross others, or lie near too many to be tested
+    std::int64_t handles = 0;            ///< of the mended surface; 0 unless they are to be removed
 
     // done
     double latticeMm = 0;               ///< spacing of the lattice of new surface; 0: none was made
@@ -60,13 +66,15 @@ struct MendStatistics {
     std::vector<MendedPlace> leftOpen;  ///< holes wider than maxHoleMm
     std::vector<MendedPlace> inner;     ///< of the input, within the solid: dropped, widest first
     std::vector<MendedPlace> thin;      ///< of the input, too thin to be kept: dropped
+    /// Handles that were cut or filled, by the flat disc that does, the widest first.
+    std::vector<MendedPlace> cutHandles, filledHandles;
 
     double movedMm = 0;  ///< no point was farther from the one it became
 
     // proved, movedMm included
     double maxErrorMm = 0;  ///< that was asked for
-    double resultToInputMm =
-        0;  ///< no point of the result, `filled` aside, is farther from the input
+    /// No point of the result, `filled` and the discs at handles aside, is farther from the input.
+    double resultToInputMm = 0;
     /// No point of the input, `inner` and `thin` aside, is farther from the result. Triangles
     /// without area are not asked.
     double inputToResultMm = 0;
@@ -75,6 +83,15 @@ struct MendStatistics {
 struct Mended {
     TriangleMesh mesh;  ///< without normals, unless it is the input
     MendStatistics statistics;
+};
+
+/// A mesh that can't be mended as asked.
+class MendRefusal : public InvalidInput {
+public:
+    MendRefusal(const std::string& what, MendStatistics found)
+        : InvalidInput(what), statistics(std::move(found)) {}
+
+    MendStatistics statistics;  ///< what was found
 };
 
 /// A closed, oriented 2-manifold that does not cross itself, made of any triangles: with holes,
@@ -89,8 +106,10 @@ struct Mended {
 ///
 /// Every vertex of a sound input comes back; the mesh itself where nothing is to be mended.
 /// \pre  the mesh has a triangle with an area; indices are in range, coordinates finite
-///       \throws InvalidInput otherwise; where it encloses no volume; where a hole is wider than
-///       maxHoleMm; where it could not be mended within the bound
+///       \throws InvalidInput otherwise
+/// \throws MendRefusal  it encloses no volume; a hole is wider than maxHoleMm; it could not be
+/// mended
+///       within the bound; no flat disc frees a handle
 /// Cost: O(T log T), and some 20 us for each cell; cells go with the area of what is mended over
 /// maxErrorMm squared. The same input gives the same bytes, whatever the number of threads.
 Mended mend(const TriangleMesh& mesh, const MendOptions& options = {});

@@ -12,6 +12,7 @@
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/Extraction/Mend.h"
 #include "adaptiso/HeadModel/ConductivityModel.h"
 #include "adaptiso/HeadModel/Finding.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
@@ -98,6 +99,7 @@ struct BemSurface {
     std::int64_t denseTriangles = 0;  ///< 0: the surface was taken as it came
     /// Vertices of a ready surface that only needs other triangles, and as many.
     std::optional<std::int64_t> ownVertices;
+    std::optional<MendStatistics> mending{};  ///< of a ready surface that was unsound; LPS mm
     std::optional<RemeshStatistics> remesh;
     SurfaceMove move;  ///< by nesting
     TopologyReport topology;

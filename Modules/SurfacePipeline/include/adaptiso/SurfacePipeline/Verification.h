@@ -30,7 +30,8 @@ void requireWithin(double measuredMm, double boundMm, const TriangleMesh& surfac
 
 /// surfaceDistance() to verify by: from all vertices, and on each surface from 4 points for each
 /// triangle of the larger one; 2,000 at least, 200,000 at most.
-DistanceReport sampledDistance(const TriangleMesh& surface, const TriangleMesh& original);
+DistanceReport sampledDistance(const TriangleMesh& surface, const TriangleMesh& original,
+                               bool isSymmetric = true);
 
 /// Measures a surface that lies within `boundMm` of `original`, both ways.
 /// \throws InternalError  as requireWithin()

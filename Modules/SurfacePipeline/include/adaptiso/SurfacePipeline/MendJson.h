@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/Json/Json.h"
+
+namespace adaptiso {
+
+/// Counts of the faults that mend() found, by key.
+Json mendFaultsJson(const MendStatistics& statistics);
+/// Those that there are: "3 open border edges".
+std::vector<std::string> mendFaultTexts(const MendStatistics& statistics);
+
+/// Lists of the places that the proved distances do not hold for, by key.
+Json mendPlacesJson(const MendStatistics& statistics);
+/// Those that there are: "2 holes closed, 31 mm2; the widest spans 4.2 mm, around 1, 2, 3".
+std::vector<std::string> mendPlaceTexts(const MendStatistics& statistics);
+
+/// How far the two surfaces lie apart, but for what is listed.
+std::string mendDistanceText(const MendStatistics& statistics, double roundingMm);
+
+}  // namespace adaptiso
