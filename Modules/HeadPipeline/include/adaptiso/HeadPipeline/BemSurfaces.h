@@ -18,7 +18,8 @@ std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemM
 ///   what adaptiso-check finds no fault with (but for the gaps) stays as it came;
 ///   a closed ball with vertices, triangles or small pieces of no use loses them; one with needles
 ///   or flat triangles is to be remeshed; one that is open, crosses itself or has loose pieces is
-///   mended by mend(); where that leaves a handle, all are made anew from the solids that they bound.
+///   mended by mend(); where that leaves a handle, all are made anew from the solids that they
+///   bound.
 /// Fills the model's surfaces and notes; sizes that are no head's become findings.
 /// \param surfaces  LPS mm, inside out; may be broken in any way
 /// \return  as they came when the model got findings
