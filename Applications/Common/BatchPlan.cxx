@@ -97,7 +97,9 @@ std::string commandOf(const BatchProgram& program, const BatchOptions& batch) {
     if (batch.list.empty()) words += " INPUT...";
     add("--list", batch.list);
     for (const std::string& option : batch.runOptions) {
-        words += " " + shellQuoted(withoutFolders(option));
+        const auto [name, value] = split(option);
+        const bool isPath = value.find('/') != std::string::npos;
+        words += " " + shellQuoted(isPath ? name + "=" + baseName(value) : option);
     }
     add("--output-dir", batch.outputFolder);
     add("--summary", batch.summary);

@@ -77,13 +77,13 @@ SummaryRow recordRow(const RunRecord& record) {
     SummaryRow row{record.program, record.name};
     row.file = joined(record.files);
     row.seconds = record.seconds;
-    row.date = record.date;
     if (!record.hasEnded) {
         row.state = RunState::NotFinished;
         row.says = "not finished: it runs, or was interrupted";
         row.reason = "it runs, or was interrupted";
         return row;
     }
+    row.date = record.date;
     row.says = record.error.empty() ? record.says : record.error;
     row.state = record.hasPassed() ? RunState::Done : RunState::Failed;
     if (!record.hasPassed()) row.reason = reasonOf(row.says, record.files);

@@ -367,19 +367,34 @@ void takeRequest(BidsOptions& options) {
     }
 }
 
-/// As on the command line, complete: "--surfaces iso=100 --check".
+/// Of "iso=100,brain-mask=masks/{name}.nii" the names of files alone.
+std::string withoutFoldersInList(const std::string& list) {
+    std::string text;
+    for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+        end = list.find(',', begin);
+        const std::string item = list.substr(begin, end - begin);
+        const std::size_t value = item.find('=') + 1;  // 0: a value alone
+        const bool isPath = item.find('/', value) != std::string::npos;
+        if (begin > 0) text += ",";
+        text += isPath ? item.substr(0, value) + baseName(item.substr(value)) : item;
+    }
+    return text;
+}
+
+/// As on the command line, complete but for folders, which may name a patient: "--surfaces iso=100
+/// --check".
 std::string wordsOf(const BidsOptions& options) {
     std::string words;
     for (const std::string product : kProducts) {
         if (!options.makes(product)) continue;
-        const std::string& list = options.wanted.at(product);
+        const std::string list = withoutFoldersInList(options.wanted.at(product));
         words += (words.empty() ? "--" : " --") + product;
         if (!list.empty()) {
             words +=
                 (product == "surfaces" ? " " : " --" + product + "-options ") + shellQuoted(list);
         }
         if (product == "labels" && !options.segmentations.empty()) {
-            words += " --segmentations " + shellQuoted(options.segmentations.string());
+            words += " --segmentations " + shellQuoted(baseName(options.segmentations));
         }
     }
     if (!options.makesPictures) words += " --no-pictures";
@@ -388,12 +403,12 @@ std::string wordsOf(const BidsOptions& options) {
     return words;
 }
 
-/// The group level's command, without folders, which may name a patient.
+/// The group level's command.
 std::string commandOf(const BidsOptions& options, bool areFromRecords) {
     std::string words = std::string(kProgram) + " BIDS_DIR OUT_DIR group";
     for (const std::string& label : options.participants) words += " --participant-label " + label;
     for (const std::string& label : options.sessions) words += " --session-label " + label;
-    if (!areFromRecords) words += " " + withoutFolders(wordsOf(options));
+    if (!areFromRecords) words += " " + wordsOf(options);
     const OutlierRule &rule = options.outliers, usual;
     if (rule.limit != usual.limit) words += " --outlier " + formatNumber(rule.limit);
     if (rule.leastPercent != usual.leastPercent) {

@@ -43,7 +43,7 @@ Json outputJson(const MendRun& run) {
     json["bytes"] = run.bytes;
     json["written"] = run.writesSurface();
     json["copied"] = run.isCopy;
-    json["maxErrorMm"] = number(done.maxErrorMm);
+    json["maxErrorMm"] = number(done.maxErrorMm * run.output.scale);
     json["resultToInputMm"] = number(run.resultToInputMm());
     json["inputToResultMm"] = number(run.inputToResultMm());
     json["roundingMm"] = number(run.roundingMm);

@@ -1,6 +1,7 @@
 #include "Pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "Run.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso::simplifier {
@@ -112,16 +114,23 @@ void warnOfSize(const TriangleMesh& mesh, SimplifyRun& run) {
     if (warning) run.warnings.push_back(*warning);
 }
 
-/// Parts that lie at each other and share no points: nothing goes along their borders.
-void warnOfPlaces(TriangleMesh mesh, SimplifyRun& run) {
+/// Borders that lie at each other and share no points: nothing goes across.
+void warnOfPlaces(const TriangleMesh& mesh, SimplifyRun& run) {
     if (run.input.topology.count(TopologyDefect::BoundaryEdge) == 0) return;
-    const std::int64_t apart = joinVertices(mesh);
+    std::vector<std::array<double, 3>> places;
+    for (const VertexId v : borderOf(mesh).vertices) {
+        const Vec3& p = mesh.points[v];
+        places.push_back({p.x, p.y, p.z});
+    }
+    std::sort(places.begin(), places.end());
+    const auto apart = places.end() - std::unique(places.begin(), places.end());
     if (apart == 0) return;
-    run.warnings.push_back({"surface-unsound",
-                            formatCount(apart) + (apart == 1 ? " point lies" : " points lie") +
-                                " at the place of another, and triangles do not go across; "
-                                "--weld joins them",
-                            baseName(run.input.file)});
+    run.warnings.push_back(
+        {"surface-unsound",
+         formatCount(apart) + (apart == 1 ? " point lies" : " points lie") +
+             " on a border at the place of another, and triangles do not go across; "
+             "--weld joins them",
+         baseName(run.input.file)});
 }
 
 /// Open borders are what some surfaces have; all else is worth a warning.

@@ -239,6 +239,7 @@ Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh sh
     } else {
         TriangleMesh after = transformed(shown, frame.toLps);
         std::vector<double> distances = vertexDistancesMm(after, before);
+        for (double& mm : distances) mm *= run.output.scale;
         report.valuesAre = "from the input";
         report.surfaces.push_back(
             {baseName(run.output.file), std::move(after), std::move(distances)});

@@ -3,7 +3,7 @@
 # build/web/npm/adaptiso-VERSION.tgz. Debian 12, as root or with sudo, and Node 20 or later with npm.
 # Running it again is harmless.
 #
-#   Applications/web/run.sh [--quick]           both; --quick: linked in seconds, a tenth larger
+#   Applications/web/run.sh [--quick]           both; --quick: made in less time, larger and slower
 #   Applications/web/run.sh [--quick] --test    and tests them beside the native programs in ADAPTISO_BIN, or
 #                                               build/release/bin: the modules' unit tests, the programs and
 #                                               the package under Node, the page in Chromium and Firefox;
@@ -12,14 +12,14 @@
 #                                               programs' bytes. Ends with ctest's summary and its exit code
 set -euo pipefail
 
-link=-O3
+optimisation=-O3
 unitTests=(unitTests)
 without=()
 isTest=
 for option; do
     case $option in
         --quick)
-            link=-O1
+            optimisation=-O1
             export ADAPTISO_WEB_QUICK=1
             unitTests=(testCore testImageIO testMeshIO testMeshQuality testSpanSpace)
             without=(-E '^(Extraction|AdaptiveClasses|Labels|HeadModel)$')
@@ -46,7 +46,7 @@ if [[ $isTest && ! -x $ADAPTISO_BIN/adaptiso-mesh ]]; then
 fi
 
 export NODE_PATH=/usr/share/nodejs  # acorn, which Emscripten's linker needs, for a Node that is not Debian's
-cmake --log-level=WARNING --preset web -DADAPTISO_WEB_LINK=$link -DCMAKE_UNITY_BUILD=ON
+cmake --log-level=WARNING --preset web -DADAPTISO_WEB_LINK=$optimisation -DCMAKE_CXX_FLAGS_RELEASE="$optimisation -DNDEBUG" -DCMAKE_UNITY_BUILD=ON
 cmake --build --preset web --target adaptisoWeb adaptisoNode ${isTest:+"${unitTests[@]}"}
 version=$(sed -n 's/^project(adaptiso VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 node Applications/web/npm/build.mjs build/web "$version"

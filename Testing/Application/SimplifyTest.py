@@ -233,8 +233,8 @@ class Soundness(SimplifyTest):
         self.path("soup.ply").write_text(ply((corners, alone)))
         report = self.simplify("soup.ply", "--max-error", "1", "-o", "out.ply")
         self.assertEqual(lines(report["warnings"])[0],
-                         "soup.ply: 798 points lie at the place of another, and triangles do not "
-                         "go across; --weld joins them")
+                         "soup.ply: 798 points lie on a border at the place of another, and "
+                         "triangles do not go across; --weld joins them")
         self.assertEqual(report["output"]["triangles"], 320)
         joined = self.simplify("soup.ply", "--max-error", "1", "--weld", "-o", "joined.ply")
         self.assertEqual((joined["warnings"], joined["input"]["sound"]), ([], True))

@@ -118,9 +118,13 @@ class Values(unittest.TestCase):
         self.assertEqual(mesh.simplify(max_error=0.3).report, adaptiso.simplify(mesh, max_error=0.3).report)
 
     def test_an_array_without_affine_is_in_voxel_indices(self):
-        self.assertEqual(sphere().frame, "voxel")
-        self.assertEqual(sphere(affine=LIA).frame, "ras")
-        self.assertEqual(sphere(spacing=(1, 1, 2)).frame, "ras")
+        for mesh, words in ((sphere(), "voxel indices"), (sphere(affine=LIA), "RAS mm"),
+                            (sphere(spacing=(1, 1, 2)), "RAS mm")):
+            self.assertIn(words, repr(mesh))
+            self.assertEqual(mesh.frame, "ras")
+        mesh = sphere()
+        self.assertEqual(mesh.transform(np.eye(4)), mesh)
+        self.assertEqual(adaptiso.Mesh(mesh.vertices, mesh.faces, mesh.normals), mesh)
 
     def test_transforms_keep_the_outside_outside(self):
         mesh = sphere(affine=LIA, max_error=0.1)

@@ -114,6 +114,17 @@ bool mendAlone(std::size_t n, TriangleMesh& mesh, BemModel& model, const BemHook
     if (left > 0) texts.push_back(formatCount(left) + " triangles of other pieces left out");
     texts.push_back(mendDistanceText(inRas, 0));
     note(model, n, "mended (places in mm RAS): " + joined(texts, "; "));
+    constexpr double kWideMm = 2;  // as reportRemade() has it
+    bool isWide = left > 0;
+    for (const auto* const places : {&inRas.filled, &inRas.inner, &inRas.thin}) {
+        for (const MendedPlace& place : *places) isWide = isWide || place.spanMm > kWideMm;
+    }
+    if (isWide) {
+        std::vector<std::string> changes = done;
+        if (left > 0) changes.push_back(formatCount(left) + " triangles of other pieces left out");
+        model.warnings.push_back({"surface-moved", bemSurfaceName(n, model.options.surfaceCount()) +
+                                                       ": mended: " + joined(changes, "; ")});
+    }
     model.surfaces[n].mending = std::move(mended.statistics);
     mesh = std::move(piece);
     return true;
@@ -128,8 +139,8 @@ Need tidied(std::size_t n, TriangleMesh& mesh, BemModel& model, const BemHooks& 
     if (mesh.triangles.empty()) throw InvalidInput("a surface holds no triangle");
     if (!isBall(mesh)) {
         TriangleMesh whole = merged(mesh), main = withoutIslands(whole);
-        if (isBall(main)) {
-            const bool hasIslands = main.triangles.size() < whole.triangles.size();
+        const bool hasIslands = main.triangles.size() < whole.triangles.size();
+        if (isBall(main) || hasIslands) {
             note(model, n,
                  hasIslands
                      ? formatCount(std::ssize(whole.triangles) - std::ssize(main.triangles)) +
@@ -172,6 +183,8 @@ std::vector<TriangleMesh> mendSurfaces(std::vector<TriangleMesh> surfaces, BemMo
                                        const BemHooks& hooks) {
     std::vector<Need> needs;
     std::vector<std::size_t> vertices;
+    std::vector<TriangleMesh> given = surfaces;
+    for (TriangleMesh& surface : given) dropUseless(surface);
     model.surfaces.resize(surfaces.size());
     for (const TriangleMesh& surface : surfaces) vertices.push_back(surface.points.size());
     hooks.stage("check", [&] {
@@ -202,7 +215,7 @@ std::vector<TriangleMesh> mendSurfaces(std::vector<TriangleMesh> surfaces, BemMo
     boundaries.progress = hooks.progress;
     HeadBoundaries mended;
     hooks.stage("boundaries", [&] { mended = boundariesFromSurfaces(surfaces, boundaries); });
-    model.given = std::move(surfaces);
+    model.given = std::move(given);
     return extractSurfaces(mended, model, hooks);
 }
 

@@ -71,7 +71,7 @@ std::uint8_t shadeOfLinear(double linear) {
 class GltfScene {
 public:
     explicit GltfScene(const MeshWriteOptions& options) {
-        const Mat3 turn = turnToGltf(options.saysFrame ? options.frame : CoordinateFrame::Ras);
+        const Mat3 turn = turnToGltf(options.frame);
         GltfJson matrix = GltfJson::array();
         for (const Vec3& c : turn.column) {
             for (const double value : {c.x, c.y, c.z, 0.0}) {

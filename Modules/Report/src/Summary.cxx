@@ -239,11 +239,17 @@ std::string chartSvg(const Chart& chart, const std::vector<SummaryRow>& rows) {
     std::string svg =
         "<svg viewBox=\"0 0 " + px(kWidth) + " 98\" role=\"img\" aria-label=\"" +
         escaped(chart.title + ": " + chart.text(chart.least) + " to " + chart.text(chart.most)) +
-        "\">\n<rect class=\"alike\" x=\"" + px(across(from) - kDot) + "\" y=\"" + px(kTop) +
-        "\" width=\"" + px(across(to) - across(from) + 2 * kDot) + "\" height=\"" +
-        px(kBase - kTop + kDot) + "\"/>\n<path class=\"axis\" d=\"M" + px(kSide) + " 77H" +
-        px(kWidth - kSide) + "M" + px(across(chart.median)) + " " + px(kTop) + "V82\"/>\n";
+        "\">\n";
+    if (from <= to) {
+        svg += "<rect class=\"alike\" x=\"" + px(across(from) - kDot) + "\" y=\"" + px(kTop) +
+               "\" width=\"" + px(across(to) - across(from) + 2 * kDot) + "\" height=\"" +
+               px(kBase - kTop + kDot) + "\"/>\n";
+    }
+    svg += "<path class=\"axis\" d=\"M" + px(kSide) + " 77H" + px(kWidth - kSide) + "M" +
+           px(across(chart.median)) + " " + px(kTop) + "V82\"/>\n";
+    const int stride = std::max(1, static_cast<int>(1 / step));  // a dot for each unit of height
     for (std::size_t n = 0; n < chart.values.size(); ++n) {
+        if (!isApart[n] && heights[n] % stride != 0) continue;
         svg += std::string("<circle class=\"") + (isApart[n] ? "apart" : "dot") + "\" cx=\"" +
                px(across(*chart.values[n])) + "\" cy=\"" + px(kBase - step * heights[n]) +
                "\" r=\"" + px(isApart[n] ? kDot + 1 : kDot) + "\"><title>" +
@@ -462,7 +468,8 @@ std::string summaryPage(const Summary& summary, const fs::path& page) {
     frame.banner = bannerOf(reasons);
     frame.facts = summaryFacts(summary);
     frame.body = reasonsHtml(reasons) + chartsHtml(summary) + runsHtml(summary, page);
-    frame.date = dateText(lastDate(rows)) + " UTC";
+    const std::string date = lastDate(rows);
+    frame.date = date.empty() ? "no run has ended" : dateText(date) + " UTC";
     frame.footnote = "Links and pictures are files beside this page; it sends nothing.";
     frame.sources =
         "img-src 'self' file:; script-src " + scriptHashes({embedded::summaryJsSha256()});

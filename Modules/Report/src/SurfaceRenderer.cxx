@@ -21,7 +21,7 @@ constexpr double kFarBehind = -std::numeric_limits<double>::infinity();
 
 /// A corner as the view sees it: pixels, and mm towards the viewer.
 struct Corner {
-    double x, y, depth;
+    double x = 0, y = 0, depth = 0;
 };
 
 /// A triangle as the view sees it.

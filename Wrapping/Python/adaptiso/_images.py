@@ -198,7 +198,7 @@ def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
     with i fastest, as files have them. \\raises Error"""
     if is_path(image):
         if affine is not None:
-            raise Error("affine, spacing: a file has its own; read it with adaptiso.read and give the array")
+            raise Error("affine: a file has its own, and its spacing; read it with adaptiso.read and give the array")
         found, scaling = _read(image)
         return prepared(found.array, found.affine, base_name(path("image", image)), found.format,
                         found.warnings)._replace(scaling=scaling)
@@ -209,7 +209,7 @@ def samples_of(image: Any, affine: Any, in_file_order: bool = False) -> Samples:
     if affine is None:
         affine = np.eye(4) if own_affine is None else own_affine
     elif own_affine is not None:
-        raise Error("affine, spacing: the image has its own; give its array and the affine")
+        raise Error("affine: the image has its own, and its spacing; give its array and the affine")
     return prepared(np.asfortranarray(array) if in_file_order else array, affine, "", kind,
                     [])._replace(scaling=scaling)
 

@@ -122,8 +122,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
     @property
     def frame(self) -> str:
         """The frame of `vertices`."""
-        frame = self._data.frame
-        return "voxel" if frame == "ras" and is_identity(self._data.affine) else frame
+        return self._data.frame
 
     @property
     def area(self) -> float:
@@ -209,7 +208,13 @@ class Mesh(Triangles[_adaptiso.MeshData]):
             picture = self.to_pyvista()
         except ImportError:
             picture = None
+        is_headless = sys.platform == "linux" and not os.environ.get("DISPLAY")
+        no_display = Error("plot: there is no display; plot(file=\"mesh.png\") needs none")
         if picture is not None:
+            is_off_screen = (options.get("off_screen") or options.get("notebook") or options.get("jupyter_backend")
+                             or getattr(sys.modules.get("pyvista"), "OFF_SCREEN", False))
+            if is_headless and not is_off_screen:
+                raise no_display
             picture.plot(**options)
             return
         if options:
@@ -219,8 +224,8 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         except ImportError:
             raise Error("plot: needs PyVista (pip install pyvista) or VTK (Debian: python3-vtk9); "
                         "plot(file=\"mesh.png\") needs neither") from None
-        if sys.platform == "linux" and not os.environ.get("DISPLAY"):  # VTK would end the process
-            raise Error("plot: there is no display; plot(file=\"mesh.png\") needs none")
+        if is_headless:  # VTK would end the process
+            raise no_display
         show(self.to_vtk())
 
     def save(self, path: Any, frame: Optional[str] = None) -> None:
@@ -312,9 +317,10 @@ class Mesh(Triangles[_adaptiso.MeshData]):
 
     def __repr__(self) -> str:
         bound = self.error_bound
-        frame = {"ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm", "unknown": "unknown frame",
-                 "voxel": IN_VOXELS}[self.frame]
-        unit = "" if self.frame == "voxel" else " mm"
+        is_in_voxels = self.frame == "ras" and is_identity(self._data.affine)
+        frame = IN_VOXELS if is_in_voxels else {
+            "ras": "RAS mm", "tkras": "tkRAS mm", "lps": "LPS mm", "unknown": "unknown frame"}[self.frame]
+        unit = "" if is_in_voxels else " mm"
         within = "" if bound is None else f", within {bound:.4g}{unit}"
         return (f"<adaptiso.Mesh of {len(self.faces):,} triangles, {len(self.vertices):,} "
                 f"vertices{within}, {frame}>")

@@ -38,6 +38,7 @@ class SimplifyOptions(TypedDict, total=False):
     reduction: Optional[float]
     min_angle: Optional[float]
     keep_borders: Optional[bool]
+    weld: Optional[bool]
 
 
 class MendOptions(TypedDict, total=False):

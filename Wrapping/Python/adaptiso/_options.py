@@ -111,6 +111,8 @@ def _documented(name: str, row: _Row) -> str:
 def _advice(subject: str, typed: str, known: List[str]) -> str:
     """The argument that is meant by one that there is not, by what the programs know of other
     packages' names."""
+    if "spacing" in known and typed.replace("_", "").lower() in ("voxelsize", "voxelspacing", "pixdim", "zooms"):
+        return "; did you mean spacing=? (resample= makes new samples)"
     program = {each: name for name, each in _FUNCTIONS.items()}.get(subject, subject)
     options = [name.replace("_", "-") for name in known] + ["iso"] * ("level" in known and subject != "read")
     answer = _adaptiso.habit_answer(f"adaptiso-{program}", typed, options)
