@@ -168,6 +168,13 @@ class Balls(MendTest):
         again = self.mend("ball.off", "--ball", "-o", "again.off")
         self.assertTrue(again["found"]["sound"] and again["output"]["copied"])
 
+    def test_a_handle_thinner_than_the_bound_is_cut(self):
+        """Both caps of a cut, 0.8 times the bound apart, lie off the rest of the proof."""
+        self.write("wire.off", ring(30, 0.5, 144, 8))
+        report = self.mend("wire.off", "--ball", "--max-error", 2, "-o", "ball.off")
+        self.assertEqual((len(report["output"]["cutHandles"]), report["output"]["genus"]), (1, 0))
+        self.assertTrue(self.check("ball.off")["passed"])
+
     def test_takes_closed_surfaces(self):
         self.stays_out(USAGE, "--ball takes closed surfaces", "ring.off", "--ball", "--open", "-o", "out.off")
 
