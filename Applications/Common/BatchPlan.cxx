@@ -224,8 +224,9 @@ void printTotals(const std::vector<RunRecord>& records, const std::string& thing
     std::cout << counted(std::ssize(records), thing) << ", " << failed << " failed";
     if (before > 0) std::cout << ", " << before << " of an earlier run";
     std::cout << '\n';
-    printReasons({reasons.begin(), reasons.begin() + warnings}, "failed:");
-    printReasons({reasons.begin() + warnings, reasons.end()}, "with the warning");
+    const std::span<const SummaryReason> all(reasons.data(), reasons.size());
+    printReasons(all.first(static_cast<std::size_t>(warnings)), "failed:");
+    printReasons(all.subspan(static_cast<std::size_t>(warnings)), "with the warning");
     std::string line = written.empty() ? "" : "Wrote " + written.string();
     if (!toDo.empty()) line += (line.empty() ? "Next: " : "; next: ") + joined(toDo, "; ");
     if (!line.empty()) std::cout << oneLine(line) << '\n';

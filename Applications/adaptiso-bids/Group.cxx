@@ -381,20 +381,19 @@ std::string withoutFoldersInList(const std::string& list) {
     return text;
 }
 
-/// As on the command line, complete but for folders, which may name a patient: "--surfaces iso=100
-/// --check".
+/// As on the command line, complete: "--surfaces iso=100 --check".
 std::string wordsOf(const BidsOptions& options) {
     std::string words;
     for (const std::string product : kProducts) {
         if (!options.makes(product)) continue;
-        const std::string list = withoutFoldersInList(options.wanted.at(product));
+        const std::string& list = options.wanted.at(product);
         words += (words.empty() ? "--" : " --") + product;
         if (!list.empty()) {
             words +=
                 (product == "surfaces" ? " " : " --" + product + "-options ") + shellQuoted(list);
         }
         if (product == "labels" && !options.segmentations.empty()) {
-            words += " --segmentations " + shellQuoted(baseName(options.segmentations));
+            words += " --segmentations " + shellQuoted(options.segmentations.string());
         }
     }
     if (!options.makesPictures) words += " --no-pictures";
@@ -403,12 +402,17 @@ std::string wordsOf(const BidsOptions& options) {
     return words;
 }
 
-/// The group level's command.
+/// The group level's command, without folders, which may name a patient.
 std::string commandOf(const BidsOptions& options, bool areFromRecords) {
     std::string words = std::string(kProgram) + " BIDS_DIR OUT_DIR group";
     for (const std::string& label : options.participants) words += " --participant-label " + label;
     for (const std::string& label : options.sessions) words += " --session-label " + label;
-    if (!areFromRecords) words += " " + wordsOf(options);
+    if (!areFromRecords) {
+        BidsOptions shown = options;
+        for (auto& [product, list] : shown.wanted) list = withoutFoldersInList(list);
+        if (!shown.segmentations.empty()) shown.segmentations = baseName(shown.segmentations);
+        words += " " + wordsOf(shown);
+    }
     const OutlierRule &rule = options.outliers, usual;
     if (rule.limit != usual.limit) words += " --outlier " + formatNumber(rule.limit);
     if (rule.leastPercent != usual.leastPercent) {
