@@ -298,8 +298,8 @@ private:
             }
         }
         for (const auto& [option, path] : run.extras) {
-            if (!record.isFinished() && option != "--report")
-                continue;  // an earlier run's pictures
+            const bool mayBeEarlier = !record.isFinished() && option != "--report";
+            if (mayBeEarlier) continue;  // pictures of another run
             for (const fs::path& file : filesOfInput(path, {})) {
                 if (!fs::exists(file)) continue;
                 const fs::path base = run.item.folder.empty() ? "." : run.item.folder;

@@ -35,9 +35,9 @@ std::optional<Vec3> parseBed(std::string_view text) {
     return bed;
 }
 
-std::string textOf(const Vec3& lengths, const char* between) {
-    return formatShort(lengths.x) + between + formatShort(lengths.y) + between +
-           formatShort(lengths.z);
+std::string textOf(const Vec3& lengths, const char* between,
+                   std::string (*format)(double) = formatShort) {
+    return format(lengths.x) + between + format(lengths.y) + between + format(lengths.z);
 }
 
 OptionValue factorValue(const PrintScale& asked, const OptionFacts&) {
@@ -54,7 +54,7 @@ void setFactor(PrintScale& asked, const OptionValue& value, const OptionFacts&) 
 
 OptionValue bedValue(const PrintScale& asked, const OptionFacts&) {
     if (!asked.bedMm) return {};
-    return textOf(*asked.bedMm, ",");
+    return textOf(*asked.bedMm, ",", formatNumber);
 }
 
 void setBed(PrintScale& asked, const OptionValue& value, const OptionFacts&) {

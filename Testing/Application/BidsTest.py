@@ -552,6 +552,7 @@ class Group(BidsTest):
                 printed = re.search(r"^options: (.*)$", done.stdout, re.MULTILINE)[1]
                 again = self.bids(OK, "group", what=shlex.split(printed))
                 self.assertEqual(again.stdout, done.stdout)
+                self.assertNotIn(str(self.study.parent), self.path("out/summary.html").read_text())
                 self.assertEqual(self.tree(), whole)
                 self.assertNotIn(None, self.told(what=shlex.split(printed)).values())
                 self.assertNotIn(True, [bool(again) for again in self.told(what=shlex.split(printed)).values()])

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Phrases.h"
@@ -48,14 +47,8 @@ std::int64_t dropUseless(TriangleMesh& mesh) {
 
 /// Vertices at the same place made one: what a triangle soup lacks.
 TriangleMesh merged(const TriangleMesh& mesh) {
-    std::map<std::tuple<double, double, double>, VertexId> first;
     TriangleMesh result = mesh;
-    for (Triangle& t : result.triangles) {
-        for (VertexId& v : t) {
-            const auto [x, y, z] = mesh.points[v];
-            v = first.try_emplace({x, y, z}, v).first->second;
-        }
-    }
+    joinVertices(result);
     dropUseless(result);
     return result;
 }
@@ -108,22 +101,19 @@ bool mendAlone(std::size_t n, TriangleMesh& mesh, BemModel& model, const BemHook
         }
     }
     std::vector<std::string> texts = mendFaultTexts(inRas);
-    const std::vector<std::string> done = mendPlaceTexts(inRas);
-    texts.insert(texts.end(), done.begin(), done.end());
+    std::vector<std::string> done = mendPlaceTexts(inRas);
     const std::int64_t left = std::ssize(mended.mesh.triangles) - std::ssize(piece.triangles);
-    if (left > 0) texts.push_back(formatCount(left) + " triangles of other pieces left out");
+    if (left > 0) done.push_back(formatCount(left) + " triangles of other pieces left out");
+    texts.insert(texts.end(), done.begin(), done.end());
     texts.push_back(mendDistanceText(inRas, 0));
     note(model, n, "mended (places in mm RAS): " + joined(texts, "; "));
-    constexpr double kWideMm = 2;  // as reportRemade() has it
     bool isWide = left > 0;
     for (const auto* const places : {&inRas.filled, &inRas.inner, &inRas.thin}) {
-        for (const MendedPlace& place : *places) isWide = isWide || place.spanMm > kWideMm;
+        for (const MendedPlace& place : *places) isWide = isWide || place.spanMm > kMostChangeMm;
     }
     if (isWide) {
-        std::vector<std::string> changes = done;
-        if (left > 0) changes.push_back(formatCount(left) + " triangles of other pieces left out");
         model.warnings.push_back({"surface-moved", bemSurfaceName(n, model.options.surfaceCount()) +
-                                                       ": mended: " + joined(changes, "; ")});
+                                                       ": mended: " + joined(done, "; ")});
     }
     model.surfaces[n].mending = std::move(mended.statistics);
     mesh = std::move(piece);

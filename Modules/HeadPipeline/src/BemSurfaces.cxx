@@ -156,7 +156,6 @@ std::string moveText(std::size_t n, const BemModel& model) {
 
 /// Warns where a remeshed surface differs from the given one.
 void reportRemade(const TriangleMesh& given, std::size_t n, BemModel& model) {
-    constexpr double kRemadeMm = 2;  // voxels, smoothing and triangles take less
     const AabbTree tree(model.meshes[n]);
     std::int64_t far = 0;
     double farthestMm = 0;
@@ -164,7 +163,7 @@ void reportRemade(const TriangleMesh& given, std::size_t n, BemModel& model) {
     for (const Vec3& p : given.points) {
         const ClosestPoint nearest = tree.closestPoint(p);
         const double mm = std::sqrt(nearest.squaredDistanceMm2);
-        if (nearest.triangle < 0 || !(mm > kRemadeMm)) continue;
+        if (nearest.triangle < 0 || !(mm > kMostChangeMm)) continue;
         ++far;
         if (mm <= farthestMm) continue;
         farthestMm = mm;
@@ -174,7 +173,7 @@ void reportRemade(const TriangleMesh& given, std::size_t n, BemModel& model) {
     model.warnings.push_back(
         {"surface-moved", bemSurfaceName(n, model.meshes.size()) + ": " + formatCount(far) +
                               " of " + formatCount(std::ssize(given.points)) +
-                              " vertices given lie more than " + formatShort(kRemadeMm) +
+                              " vertices given lie more than " + formatShort(kMostChangeMm) +
                               " mm from the model's surface, up to " + formatLength(farthestMm, 2) +
                               " mm at " + rasText(farthest)});
     model.doubts.push_back({bemSurfaceName(n, model.meshes.size()) + ": given vertex " +

@@ -217,10 +217,7 @@ void TriangleGroups::measure(const TriangleView& of, const Subtree& group) {
     node.box = BoundingBox::empty();
     const auto addHub = [&](std::uint32_t hub) {
         if (hub == kNone || node.hasHub(hub)) return;
-        if (node.hubs.back() != kNone) {
-            node.hasMoreHubs = true;
-            return;
-        }
+        if (node.hubs.back() != kNone) return;
         node.hubs.back() = hub;
         std::sort(node.hubs.begin(), node.hubs.end());
     };
@@ -254,7 +251,6 @@ void TriangleGroups::measure(const TriangleView& of, const Subtree& group) {
         node.box.add(part.box);
         node.mean += part.count / node.count * (part.mean - first.mean);
         for (const std::uint32_t hub : part.hubs) addHub(hub);
-        node.hasMoreHubs = node.hasMoreHubs || part.hasMoreHubs;
     }
     for (const Subtree& half : halves) {
         for (const std::uint32_t hub : nodes_[half.node].hubs) {

@@ -98,7 +98,6 @@ private:
 
         void add(const Vec3& v, double weight);
         double trace() const { return xx + yy + zz; }
-        Vec3 operator*(const Vec3& v) const;
     };
     class Inverse;
     struct Node {
@@ -107,7 +106,6 @@ private:
         Symmetric moments;  ///< sums of their squared distances from the mean
         double count = 0;   ///< of corners
         std::array<std::uint32_t, kMostHubs> hubs{kNone, kNone, kNone, kNone};  ///< ascending
-        bool hasMoreHubs = false;
 
         bool hasHub(std::uint32_t hub) const {
             return std::find(hubs.begin(), hubs.end(), hub) != hubs.end();
@@ -153,7 +151,6 @@ private:
     BoundingBox wholeBoxOf(const Node& node) const;
     std::span<const Vec3> pointsOf(const Subtree& group) const;
 
-    static Vec3 largestRatio(const Symmetric& spread, const Inverse& size);
     void findHubs(const TriangleView& of);
     Vec3 splitDirection(const TriangleView& of, std::span<const Item> items) const;
     void order(const TriangleView& of, std::vector<Item>& items, const Subtree& group);

@@ -10,7 +10,7 @@
 
 namespace adaptiso {
 
-/// What all pages of the module are made of.
+// Parts that all pages of the module share.
 
 /// `text` as it can stand in HTML, in an element or a quoted attribute. What is not UTF-8 becomes
 /// U+FFFD, and so do control characters.
@@ -23,7 +23,7 @@ std::string scrollable(const std::string& label, const std::string& html);
 /// A cell of a table. \param column  what phones, which show a row as a card, put before it
 std::string cell(const std::string& column, const std::string& text);
 
-/// A list of names and values under a heading. Empty where there are none.
+/// A list of names and values under a heading; empty without facts.
 std::string factList(const std::string& title, const std::vector<ReportFact>& facts);
 
 /// Items that a list in the banner shows.

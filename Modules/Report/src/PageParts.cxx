@@ -234,7 +234,7 @@ std::string picturesHtml(const std::vector<Picture>& pictures) {
         "<section aria-labelledby=\"pictures-title\">\n<h2 "
         "id=\"pictures-title\">Pictures</h2>\n";
     for (const Picture& picture : pictures) {
-        // in the viewer's place, where there is none
+        // viewer.js puts it in the viewer's place where WebGL is missing
         const bool standsIn = picture.name == "surface-1.png" || picture.name == "regions.png";
         html += std::string(standsIn ? "<figure class=\"stands-in\">" : "<figure>") +
                 "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Picture: " +

@@ -111,7 +111,7 @@ public:
           depths_(colors_.size(), kFarBehind),
           owners_(colors_.size(), kNobody) {}
 
-    /// What covers a pixel is found first, so that each is shaded once for each surface.
+    /// Finds the triangle of every pixel, then shades each pixel once.
     void draw(const SceneSurface& surface, const VertexNormals& normals) {
         surface_ = &surface;
         normals_ = &normals;

@@ -54,7 +54,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
     Attributes
     ----------
     frame : str
-        "ras"; "voxel", voxel indices, of an array without affine; "tkras" for a FreeSurfer surface
+        "ras" (voxel indices of an array without affine); "tkras" for a FreeSurfer surface
         whose volume is not known; "unknown" where a file does not say its frame.
 
     Raises
@@ -167,7 +167,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         outside, and normals point outside.
 
         ``error_bound`` is of the surface moved alike. The mesh no longer knows its image, nor has it a
-        ``report``; ``frame`` is "ras" of a mesh in voxel indices, else kept.
+        ``report``; ``frame`` stays.
 
         Parameters
         ----------

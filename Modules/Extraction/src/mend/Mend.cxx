@@ -213,7 +213,7 @@ void requireNarrowCaps(const MendInput& input, double boundMm, double maxHoleMm)
     }
 }
 
-/// What closes holes, the widest first.
+/// The places where triangles close holes, the widest first.
 auto filledPlaces(const MendAssembly& assembly) {
     std::vector<std::uint8_t> isFilled(assembly.source.size());
     for (std::size_t t = 0; t < isFilled.size(); ++t) {
@@ -285,7 +285,7 @@ bool mendIn(MendRegion& region, const MendInput& input, const detail::WindingFie
     return false;
 }
 
-/// Refuses what a lattice eight times as coarse shows: a hole that is too wide, no inside.
+/// Refuses a hole that is too wide by a lattice eight times as coarse.
 void rehearse(const MendInput& input, const AabbTree& tree, const detail::WindingField& field,
               const BoundingBox& box, double boundMm, double maxHoleMm) {
     const double roughMm = std::min(8 * boundMm, maxHoleMm / 4);

@@ -596,8 +596,8 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
     if (dropCrossingCaps(input)) findEdges(input);
     countCrossing(input, statistics);
     judgeEdges(input, statistics);
-    const bool isOneSided = std::none_of(sheets.oddPoint.begin(), sheets.oddPoint.end(),
-                                         [](const auto& point) { return !point; });
+    const bool isOneSided = std::all_of(sheets.oddPoint.begin(), sheets.oddPoint.end(),
+                                        [](const auto& point) { return point.has_value(); });
     if (isOneSided && statistics.borderEdges > 0) {
         input.oneSidedMm = input.mesh.points[*sheets.oddPoint[0]];
     }

@@ -107,9 +107,8 @@ public:
 /// Every vertex of a sound input comes back; the mesh itself where nothing is to be mended.
 /// \pre  the mesh has a triangle with an area; indices are in range, coordinates finite
 ///       \throws InvalidInput otherwise
-/// \throws MendRefusal  it encloses no volume; a hole is wider than maxHoleMm; it could not be
-/// mended
-///       within the bound; no flat disc frees a handle
+/// \throws MendRefusal  it encloses no volume; a hole is wider than maxHoleMm; the bound can't be
+///                      held; no flat disc cuts or fills a handle
 /// Cost: O(T log T), and some 20 us for each cell; cells go with the area of what is mended over
 /// maxErrorMm squared. The same input gives the same bytes, whatever the number of threads.
 Mended mend(const TriangleMesh& mesh, const MendOptions& options = {});

@@ -8,6 +8,10 @@
 
 namespace adaptiso {
 
+/// A ready surface that changes by more is warned of, where it is mended or made anew: voxels,
+/// smoothing and triangles take less.
+inline constexpr double kMostChangeMm = 2;
+
 /// The dense surface of every solid, by marching cubes (stage "extract"). Adds the boundaries'
 /// notes and warnings to the model's, and an entry for every surface to its surfaces.
 /// \return LPS mm, inside out

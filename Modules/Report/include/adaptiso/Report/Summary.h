@@ -33,7 +33,7 @@ struct SummaryRow {
     std::filesystem::path report{};       ///< a page of --report; may be empty
     std::filesystem::path pictures{};     ///< a folder of --pictures; may be empty
     std::vector<std::string> warnings{};  ///< codes, without notes, each once
-    /// Of its surfaces: name (may be empty) and mm3.
+    /// Name (may be empty) and volume of each of its surfaces.
     std::vector<std::pair<std::string, double>> volumesMm3{};
 };
 

@@ -32,7 +32,7 @@ struct PreprocessedImage {
 /// where not asked for, and null altogether when nothing was.
 Json preprocessingJson(const PreprocessOptions& options, const Index3& size);
 
-/// `preprocessing`: the same with what came of it; null where there is no `image`.
+/// The same, with geometry, pixel type and range of the preprocessed image; null without `image`.
 Json preprocessedJson(const PreprocessOptions& options, const Index3& size,
                       const std::optional<PreprocessedImage>& image);
 
