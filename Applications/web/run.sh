@@ -7,9 +7,11 @@
 #   Applications/web/run.sh [--quick] --test    and tests them beside the native programs in ADAPTISO_BIN, or
 #                                               build/release/bin: the modules' unit tests, the programs and
 #                                               the package under Node, the page in Chromium and Firefox;
-#                                               --quick: without the unit tests of Extraction, Labels and
-#                                               HeadModel, which take minutes and whose results are in the
-#                                               programs' bytes. Ends with ctest's summary and its exit code
+#                                               --quick: without the unit tests of Extraction, Labels,
+#                                               HeadModel and MeshQuality, which take minutes and whose
+#                                               results are in the programs' bytes; the longest tests of the
+#                                               page in Chromium alone. Ends with ctest's summary and its
+#                                               exit code
 set -euo pipefail
 
 optimisation=-O3
@@ -21,8 +23,8 @@ for option; do
         --quick)
             optimisation=-O1
             export ADAPTISO_WEB_QUICK=1
-            unitTests=(testCore testImageIO testMeshIO testMeshQuality testSpanSpace)
-            without=(-E '^(Extraction|AdaptiveClasses|Labels|HeadModel)$')
+            unitTests=(testCore testImageIO testMeshIO testSpanSpace)
+            without=(-E '^(Extraction|AdaptiveClasses|Labels|HeadModel|MeshQuality)$')
             ;;
         --test) isTest=yes ;;
         *) echo "Applications/web/run.sh: unknown option $option; --quick and --test are known" >&2; exit 2 ;;

@@ -1,5 +1,5 @@
 """Calls by the million: hypothesis makes up pools of arguments, and calls take what they find in them.
-How many calls there are is ADAPTISO_CALLS (20,000); their number and rate are printed. Each gives a
+How many calls there are is ADAPTISO_CALLS (8,000); their number and rate are printed. Each gives a
 result or an adaptiso.Error, never another exception and never a crash. More than 100,000 are made in
 processes of 100,000, so that a crash names the seed that makes it again (ADAPTISO_SEED). Exit code 77:
 hypothesis is not there."""
@@ -21,7 +21,7 @@ import numpy as np
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
-CALLS = int(os.environ.get("ADAPTISO_CALLS", "20000"))
+CALLS = int(os.environ.get("ADAPTISO_CALLS", "8000"))
 #: of one example: drawing arguments takes longer than most calls
 BATCH = 1000
 #: of one process

@@ -44,6 +44,8 @@ describe("the file", () => {
 });
 
 for (const browserName of kBrowsers) {
+  // minutes of the same module: with ADAPTISO_WEB_QUICK in one browser
+  const itOnce = process.env.ADAPTISO_WEB_QUICK && browserName !== "chrome" ? it.skip : it;
   describe(`the page in ${browserName}`, () => {
     let open, page, folder;
     before(async () => {
@@ -146,7 +148,7 @@ for (const browserName of kBrowsers) {
       assert.equal(nodes[1].name, "balls.3mf");
     });
 
-    it("makes the same bytes with every option of the form", async () => {
+    itOnce("makes the same bytes with every option of the form", async () => {
       await give(page, "#scan-files", join(folder, "balls.nii"));
       await page.waitForFunction(() => document.body.dataset.scan === "balls.nii");
       await page.select("#format", ".ply");
@@ -325,7 +327,7 @@ for (const browserName of kBrowsers) {
       assert.equal(await ended(page, "mesh"), "");
     });
 
-    it("makes a head model of labels: the program's files", async () => {
+    itOnce("makes a head model of labels: the program's files", async () => {
       writeNifti(join(folder, "seg.nii"), [85, 85, 85], headLabels,
         [280, 300, 320].map((at) => [at, "FloatLE", 2]).concat([[80, "FloatLE", 2], [84, "FloatLE", 2], [88, "FloatLE", 2]]));
       await press(page, "#tab-mesh");
@@ -346,7 +348,7 @@ for (const browserName of kBrowsers) {
       await picture(page, `${browserName}-head`);
     });
 
-    it("makes all regions of labels: the program's files", async () => {
+    itOnce("makes all regions of labels: the program's files", async () => {
       await press(page, "#tab-labels");
       await give(page, "#labels-file", join(folder, "seg.nii"));
       await page.waitForFunction(() => document.body.dataset.scan === "seg.nii");
@@ -380,7 +382,7 @@ for (const browserName of kBrowsers) {
       await picture(page, `${browserName}-labels`);
     });
 
-    it("makes a head model of the example by one click", async () => {
+    itOnce("makes a head model of the example by one click", async () => {
       await press(page, "#tab-head");
       await page.$eval("#head .result", (box) => { box.hidden = true; });  // the last one's stays until the scan is open
       await press(page, "#head-example");
@@ -391,7 +393,7 @@ for (const browserName of kBrowsers) {
       await picture(page, `${browserName}-head-example`);
     });
 
-    it("takes a mask back, and drops it with its scan", async () => {
+    itOnce("takes a mask back, and drops it with its scan", async () => {
       await press(page, "#tab-head");
       const mask = () => textOf(page, "#mask-name");
       await give(page, "#mask-file", join(folder, "balls.nii"));
