@@ -86,15 +86,14 @@ void placeUnknownFrames(std::span<NamedMesh> meshes, bool isInImage, CommonFrame
               : Warning{"guessed-frame", what + "; taken for one and the same"});
 }
 
-void requireNoLooseVoxels(const NamedMesh& mesh) {
+void requireNoLooseVoxels(const NamedMesh& mesh, const std::string& remedy) {
     if (mesh.file.frame == CoordinateFrame::Voxel && lacksVolume(mesh)) {
-        throw InvalidInput(frameText(mesh) +
-                           ", which says nothing of mm; give the image by --volume");
+        throw InvalidInput(frameText(mesh) + ", which says nothing of mm; " + remedy);
     }
 }
 
 /// tkRAS whose volume is not known.
-void placeLooseTkRas(std::span<NamedMesh> meshes, CommonFrame& common) {
+void placeLooseTkRas(std::span<NamedMesh> meshes, const std::string& remedy, CommonFrame& common) {
     const auto loose = std::find_if(meshes.begin(), meshes.end(), lacksVolume);
     if (loose == meshes.end()) return;
     const auto stranger = std::find_if(meshes.begin(), meshes.end(), [](const NamedMesh& m) {
@@ -103,8 +102,7 @@ void placeLooseTkRas(std::span<NamedMesh> meshes, CommonFrame& common) {
     if (stranger != meshes.end()) {
         const NamedMesh &first = *std::min(loose, stranger), &second = *std::max(loose, stranger);
         throw InvalidInput(frameText(first) + " and " + frameText(second) +
-                           ", and the files don't say how the two relate; give the image by "
-                           "--volume");
+                           ", and the files don't say how the two relate; " + remedy);
     }
     const auto placed = std::find_if_not(meshes.begin(), meshes.end(), lacksVolume);
     const ImageGeometry volume = placed == meshes.end() ? standInVolume() : *placed->file.volume;
@@ -163,15 +161,15 @@ bool areOfOneFormat(const NamedMesh& a, const NamedMesh& b) {
     return a.file.format == b.file.format;
 }
 
-CommonFrame bringToOneFrame(std::span<NamedMesh> meshes,
-                            const std::optional<ImageGeometry>& image) {
+CommonFrame bringToOneFrame(std::span<NamedMesh> meshes, const std::optional<ImageGeometry>& image,
+                            const std::string& remedy) {
     CommonFrame common;
     placeUnknownFrames(meshes, image.has_value(), common);
     for (NamedMesh& mesh : meshes) {
         if (image && lacksVolume(mesh)) mesh.file.volume = frameVolume(*mesh.file.frame, *image);
-        requireNoLooseVoxels(mesh);
+        requireNoLooseVoxels(mesh, remedy);
     }
-    placeLooseTkRas(meshes, common);
+    placeLooseTkRas(meshes, remedy, common);
     for (NamedMesh& mesh : meshes) {
         mesh.file.mesh = fromFrame(mesh.file.mesh, *mesh.file.frame, mesh.file.volume);
     }

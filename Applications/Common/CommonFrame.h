@@ -80,9 +80,11 @@ bool areOfOneFormat(const NamedMesh& a, const NamedMesh& b);
 ///               tkRAS is then that of the image if it is stored as FreeSurfer stores images, else
 ///               of the one FreeSurfer makes of it (as adaptiso-mesh writes it). With an image all
 ///               surfaces must say their frame.
+/// \param remedy  for messages: what relates frames that the files do not
 /// \throws InvalidInput  a frame is not said and would be a guess; the frames differ and the files
 ///                       don't say how they relate; voxel indices without an image
-CommonFrame bringToOneFrame(std::span<NamedMesh> meshes, const std::optional<ImageGeometry>& image);
+CommonFrame bringToOneFrame(std::span<NamedMesh> meshes, const std::optional<ImageGeometry>& image,
+                            const std::string& remedy = "give the image by --volume");
 
 /// The format that the name of a file to write asks for. \throws UsageError  it names none
 const MeshFormat& meshFormatOf(const std::filesystem::path& file);

@@ -381,17 +381,32 @@ bool isForMending(const SurfaceRun& surface) {
     return fails(kMended) && !fails(kRefused);
 }
 
-/// The command that mends the first surface with faults that can be mended; empty if none has.
-std::string mendingCommand(const CheckRun& run) {
-    const auto found = std::ranges::find_if(run.surfaces, isForMending);
-    if (found == run.surfaces.end()) return {};
-    const std::string name = found->file.filename().string();
+/// \param more  options of adaptiso-mend, a blank before each
+std::string mendingCommand(const fs::path& file, const std::string& more) {
+    const std::string name = file.filename().string();
     const auto isWritten = [&](const MeshFormat& format) {
-        return std::ranges::count(format.extensions, found->file.extension().string()) > 0;
+        return std::ranges::count(format.extensions, file.extension().string()) > 0;
     };
     const bool keepsFormat = std::ranges::any_of(meshFormats(), isWritten);
-    return "adaptiso-mend " + shellQuoted(found->file.string()) + " -o " +
+    return "adaptiso-mend " + shellQuoted(file.string()) + more + " -o " +
            shellQuoted("mended-" + (keepsFormat ? name : name + ".vtp"));
+}
+
+/// The command that mends the first surface with faults that can be mended, or the first that lies
+/// too near around another; empty if there is none.
+std::string mendingCommand(const CheckRun& run) {
+    const auto found = std::ranges::find_if(run.surfaces, isForMending);
+    if (found != run.surfaces.end()) return mendingCommand(found->file, "");
+    for (const NestingRun& pair : run.nesting) {
+        const NestingRelation relation = pair.report.relation;
+        if (relation != NestingRelation::Nested && relation != NestingRelation::Crossing) continue;
+        if (std::ranges::none_of(pair.checks, &Check::breaksProfile)) continue;
+        const double gapMm = run.options.minGapMm.value_or(CheckRules::kDefaultMinGapMm);
+        return mendingCommand(run.surfaces[pair.outer].file,
+                              " --around " + shellQuoted(run.surfaces[pair.inner].file.string()) +
+                                  " --gap " + formatNumber(gapMm));
+    }
+    return {};
 }
 
 /// A run for each of many surfaces, or of many heads. \return, \throws as runBatch()

@@ -1,5 +1,6 @@
 #include "Pipeline.h"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/HeadModel/NestSurfaces.h"
 #include "adaptiso/SurfacePipeline/MendJson.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 
@@ -25,7 +27,7 @@ namespace fs = std::filesystem;
 void checkOutputs(MendRun& run) {
     const MendCommand& command = run.command;
     run.input.file = command.input;
-    OutputPlan plan(std::array{command.input});
+    OutputPlan plan(std::array{command.input, command.around});
     if (!command.output.empty()) {
         run.output.file = command.output;
         run.output.format = &meshFormatOf(command.output);
@@ -93,9 +95,45 @@ bool isGzip(const fs::path& file) {
     return head == std::array{'\x1f', '\x8b'};
 }
 
+/// The surface that the result is to lie around, in the frame of the input's file.
+TriangleMesh readFixed(const MeshFile& input, MendRun& run) {
+    const fs::path& file = run.command.around;
+    std::array<NamedMesh, 2> both{{{run.command.input, input},
+                                   {file, readMesh(file, {.inputCoordinates = statedFrame(
+                                                              run.command.inputCoordinates, 1)})}}};
+    MeshFile &own = both[0].file, &fixed = both[1].file;
+    addWarnings(run.warnings, fixed.warnings, baseName(file));
+    const CommonFrame common =
+        bringToOneFrame(both, std::nullopt,
+                        "bring one to the other's frame first (adaptiso-simplify --coordinates)");
+    addWarnings(run.warnings, common.warnings);
+    if (!isOneSolid(fixed.mesh)) {
+        throw InvalidInput(file.string() +
+                           ": --around takes a closed, oriented 2-manifold in one piece; mend it "
+                           "first (adaptiso-mend)");
+    }
+    return transformed(fixed.mesh, lpsToFrame(*own.frame, own.volume));
+}
+
+/// Moves the mended mesh to lie around `fixed`; where that can't be had, the run gets the reason.
+void keepAround(const TriangleMesh& fixed, TriangleMesh& mesh, MendRun& run) {
+    const BoundingBox box = boundingBox(mesh);
+    const double digitsMm =
+        1e-6 * std::max(norm(box.minimum), norm(box.maximum));  // of a file's 24 bits
+    try {
+        NestedAround nested = nestAround(mesh, fixed, *run.command.gapMm + digitsMm);
+        run.move = nested.move;
+        run.gapMm = nested.gap.mm;
+        mesh.points = std::move(nested.points);
+        if (run.move.movedVertices > 0) mesh.normals.clear();
+    } catch (const InvalidInput& refusal) {
+        run.refusal = "--around " + baseName(run.command.around) + ": " + refusal.what();
+    }
+}
+
 /// A sound mesh keeps its very bytes, where nothing else about the file is to change.
 bool isCopied(const MeshFile& input, const FrameChange& change, const MendRun& run) {
-    return run.statistics.wasSound && input.format == run.output.format && !change.move &&
+    return run.isUnchanged() && input.format == run.output.format && !change.move &&
            !run.command.frame && run.command.inputCoordinates.empty() && !isGzip(run.input.file);
 }
 
@@ -144,7 +182,8 @@ void requireDigits(const MendRun& run) {
 }
 
 void warnOfRounding(MendRun& run) {
-    const double bound = std::max(run.resultToInputMm(), run.inputToResultMm());
+    const double bound =
+        std::max(run.resultToInputMm(), run.inputToResultMm()) - run.move.maximumMm;
     const auto warning = roundingWarning(baseName(run.output.file), bound,
                                          run.statistics.maxErrorMm * run.output.scale,
                                          run.roundingMm, *run.output.format);
@@ -154,14 +193,17 @@ void warnOfRounding(MendRun& run) {
 /// Brings distances, proved and measured in the input, to those of the file.
 void scaleDistances(double factor, MendRun& run) {
     run.output.scale = factor;
-    for (double* const mm : {&run.statistics.resultToInputMm, &run.statistics.inputToResultMm,
-                             &run.roundingMm, &run.verification->maxMm}) {
+    for (double* const mm :
+         {&run.statistics.resultToInputMm, &run.statistics.inputToResultMm, &run.roundingMm,
+          &run.verification->maxMm, &run.gapMm, &run.move.maximumMm, &run.move.meanMm}) {
         *mm *= factor;
     }
 }
 
 /// Writes the result, with the values at its points, in the frame that is asked for.
-void finish(TriangleMesh result, const MeshFile& input, MendRun& run) {
+/// \param mended  its points before they were moved \param fixed  no triangles: it lies around none
+void finish(TriangleMesh result, std::vector<Vec3> mended, const TriangleMesh& fixed,
+            const MeshFile& input, MendRun& run) {
     FrameChange change = changeFrame(input, run.input.file, run.command.frame, run.output.file);
     const double factor =
         chooseScale(run.command.scale, result, change.move.value_or(AffineTransform{}),
@@ -173,8 +215,10 @@ void finish(TriangleMesh result, const MeshFile& input, MendRun& run) {
         run.output.topology = run.input.topology;
         return run.stage("write", [&] { copyFile(run); });
     }
+    std::swap(result.points, mended);
     std::vector<PointArray> values =
         run.stage("values", [&] { return takeValues(input, result, run); });
+    std::swap(result.points, mended);
     MeshFile written = run.stage("write", [&] {
         if (!run.output.format->holdsNormals) result.normals.clear();
         TriangleMesh settled = result;
@@ -185,10 +229,10 @@ void finish(TriangleMesh result, const MeshFile& input, MendRun& run) {
     });
     run.stage("verify", [&] {
         summarize(written.mesh, run.output);
-        verify({input.mesh, change.undo(std::move(written.mesh)),
-                run.roundingMm + change.roundingMm(result)},
-               result, run);
+        const TriangleMesh surface = change.undo(std::move(written.mesh));
+        verify({input.mesh, surface, run.shiftMm() + change.roundingMm(result)}, result, run);
         requireDigits(run);
+        if (!fixed.triangles.empty()) verifyAround(surface, fixed, run);
     });
     scaleDistances(factor, run);
     warnOfRounding(run);
@@ -212,9 +256,15 @@ int runMend(const MendCommand& command) {
     summarize(input.mesh, run.input);
     requireMendable(input, run);
     warnOfSize(input.mesh, run);
+    TriangleMesh fixed;
+    if (!command.around.empty()) fixed = run.stage("read", [&] { return readFixed(input, run); });
     run.stage("check", [&] { run.input.topology = checkTopology(input.mesh); });
 
     TriangleMesh result = run.stage("mend", [&] { return mendSurface(input.mesh, run); });
+    std::vector<Vec3> mended = result.points;
+    if (run.isMended() && !command.around.empty()) {
+        run.stage("nest", [&] { keepAround(fixed, result, run); });
+    }
     if (!run.isMended()) {
         run.verdict = {kExitCheckFailed,
                        baseName(command.input) + ": can't be mended as asked: " + run.refusal};
@@ -222,9 +272,9 @@ int runMend(const MendCommand& command) {
         run.output.format = input.format;
         run.output.frame = input.frame;
         summarize(result, run.output);
-        run.stage("verify", [&] { verify({input.mesh, result, 0}, result, run); });
+        run.stage("verify", [&] { verify({input.mesh, result, run.shiftMm()}, result, run); });
     } else {
-        finish(std::move(result), input, run);
+        finish(std::move(result), std::move(mended), fixed, input, run);
     }
     if (!run.writesSurface()) run.dropOutputs();
     if (run.writesSurface()) {

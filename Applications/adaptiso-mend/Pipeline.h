@@ -15,10 +15,12 @@ namespace adaptiso::mender {
 /// Options of adaptiso-mend.
 struct MendCommand {
     std::filesystem::path input;
-    std::vector<CoordinateFrame> inputCoordinates;  ///< at most one; empty: as the input says
+    std::vector<CoordinateFrame> inputCoordinates;  ///< as for checkInputCoordinates()
     MendOptions aim;
-    bool isDryRun = false;                 ///< no surface is written, `output` is left as it is
-    std::filesystem::path output;          ///< empty: isDryRun
+    std::filesystem::path around;  ///< a surface that the result is to lie around; may be empty
+    std::optional<double> gapMm;   ///< least distance to it
+    bool isDryRun = false;         ///< no surface is written, `output` is left as it is
+    std::filesystem::path output;  ///< empty: isDryRun
     std::optional<CoordinateFrame> frame;  ///< empty: the input's own
     PrintScale scale;
     ReportOptions report;  ///< none
@@ -31,8 +33,8 @@ struct MendCommand {
 /// \throws UsageError     a format is unknown or can't hold the frame
 /// \throws FileError      the input can't be read, the output can't be written
 /// \throws InvalidInput   nothing in the input has an area, it is in voxel indices, frames that
-///                        can't be brought together, coordinates that the output's format holds
-///                        too coarsely
+///                        can't be brought together, `around` is no solid, coordinates that the
+///                        output's format holds too coarsely
 /// \throws InternalError  the result breaks a promise
 int runMend(const MendCommand& command);
 

@@ -28,11 +28,23 @@ Json foundJson(const MendRun& run) {
 Json optionsJson(const MendCommand& command) {
     Json json{{"inputCoordinates", inputCoordinatesJson(command.inputCoordinates)}};
     json.update(valuesJson(mendOptions(), command.aim));
+    json["around"] = command.around.empty() ? Json() : Json(baseName(command.around));
+    json["gapMm"] = orNull(command.gapMm);
     json.update(valuesJson(scaleOptions(), command.scale));
     json["dryRun"] = command.isDryRun;
     json["threads"] = orNull(command.common.threads);
     json["strict"] = command.common.isStrict;
     return json;
+}
+
+/// How it lies around another surface; null: none was given.
+Json aroundJson(const MendRun& run) {
+    if (run.command.around.empty()) return nullptr;
+    return {{"file", baseName(run.command.around)},
+            {"gapMm", number(run.gapMm)},
+            {"movedVertices", run.move.movedVertices},
+            {"meanMoveMm", number(run.move.meanMm)},
+            {"largestMoveMm", number(run.move.maximumMm)}};
 }
 
 Json outputJson(const MendRun& run) {
@@ -51,6 +63,7 @@ Json outputJson(const MendRun& run) {
     json["keptTriangles"] = done.keptTriangles;
     json["cutTriangles"] = done.cutTriangles;
     json.update(mendPlacesJson(done));
+    json["around"] = aroundJson(run);
     json["verification"] = nullptr;
     if (run.verification) {
         json["verification"] = {{"samples", run.verification->samples},
@@ -64,7 +77,7 @@ Json resultJson(const MendRun& run) {
     if (!run.isMended()) return adaptiso::resultJson("can't be mended as asked");
     std::vector<std::string> files;
     if (run.writesSurface()) files.push_back(baseName(run.output.file));
-    return adaptiso::resultJson(run.statistics.wasSound
+    return adaptiso::resultJson(run.isUnchanged()
                                     ? "is sound"
                                     : "mended: " + formatCount(run.output.triangles) +
                                           " triangles of " + formatCount(run.input.triangles),
@@ -81,17 +94,29 @@ void printInput(std::ostream& out, const MendRun& run) {
     for (const std::string& fault : mendFaultTexts(run.statistics)) out << "  " << fault << '\n';
 }
 
+void printAround(std::ostream& out, const MendRun& run) {
+    if (run.command.around.empty()) return;
+    out << "  " << formatMeasure(run.gapMm) << " mm around "
+        << oneLine(baseName(run.command.around));
+    if (run.move.movedVertices > 0) {
+        out << ": " << counted(run.move.movedVertices, "vertex", "vertices") << " moved, by up to "
+            << formatMeasure(run.move.maximumMm) << " mm";
+    }
+    out << '\n';
+}
+
 void printOutput(std::ostream& out, const MendRun& run) {
     const SurfaceSummary& output = run.output;
     out << (output.file.empty() || run.command.isDryRun ? "mended" : oneLine(output.file.string()))
         << (run.writesSurface() ? "" : " (not written)") << ": " << formatCount(output.triangles)
         << " triangles, " << output.format->name << ", " << frameText(output.frame) << '\n';
     if (run.isCopy) out << "  the input's bytes\n";
-    if (run.statistics.wasSound) return;
+    printAround(out, run);
+    if (run.isUnchanged()) return;
     out << "  " << formatCount(run.statistics.keptTriangles)
         << " triangles of the input kept as they are\n";
     for (const std::string& places : mendPlaceTexts(run.statistics)) out << "  " << places << '\n';
-    out << "  " << mendDistanceText(run.statistics, run.roundingMm) << '\n';
+    out << "  " << mendDistanceText(run.statistics, run.shiftMm()) << '\n';
     for (const std::string& name : run.keptArrays) {
         out << "  with the values " << oneLine(name) << '\n';
     }

@@ -11,6 +11,7 @@
 #include "Pipeline.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/HeadModel/NestSurfaces.h"
 #include "adaptiso/SurfacePipeline/Verification.h"
 
 namespace adaptiso::mender {
@@ -27,6 +28,8 @@ struct MendRun : ProgramRun {
     MendStatistics statistics{};
     bool isSearched = false;                     ///< for faults: `statistics` has them
     std::string refusal{};                       ///< why it can't be mended as asked
+    SurfaceMove move{};                          ///< to lie around another surface
+    double gapMm = 0;                            ///< to it, as written
     bool isCopy = false;                         ///< the output has the input's bytes
     double roundingMm = 0;                       ///< largest move of a point by the output's digits
     std::optional<Verification> verification{};  ///< of the surface as written
@@ -34,16 +37,20 @@ struct MendRun : ProgramRun {
     std::vector<std::string> keptArrays{};       ///< values at points
 
     bool isMended() const { return refusal.empty(); }
+    /// The result is the input.
+    bool isUnchanged() const { return statistics.wasSound && move.movedVertices == 0; }
     bool writesSurface() const { return isMended() && !command.isDryRun && !failsStrict(); }
-    double resultToInputMm() const { return statistics.resultToInputMm + roundingMm; }
-    double inputToResultMm() const { return statistics.inputToResultMm + roundingMm; }
+    /// How far a point of the surface as written may be from where mend() had it.
+    double shiftMm() const { return move.maximumMm + roundingMm; }
+    double resultToInputMm() const { return statistics.resultToInputMm + shiftMm(); }
+    double inputToResultMm() const { return statistics.inputToResultMm + shiftMm(); }
 };
 
 /// A surface, and what it is checked against.
 struct VerifiedSurface {
     const TriangleMesh& input;  ///< as read
     TriangleMesh surface;       ///< the result as written, in the input's frame
-    double roundingMm = 0;      ///< at most, between a point of it and of the result as computed
+    double shiftMm = 0;         ///< at most, between a point of it and of the mended surface
 };
 
 /// Checks what is promised of the result, as written, by code that it was not made by: it is
@@ -52,6 +59,10 @@ struct VerifiedSurface {
 /// does. \param result  as computed; may be the surface itself \throws InvalidInput   the format
 /// has too few digits for the result \throws InternalError  a promise is broken
 void verify(const VerifiedSurface& surface, const TriangleMesh& result, MendRun& run);
+
+/// Checks that the surface as written lies around `fixed`, in the same frame, as far as it should,
+/// and sets how far. \throws InvalidInput  the format has too few digits for it
+void verifyAround(const TriangleMesh& surface, const TriangleMesh& fixed, MendRun& run);
 
 /// The report of --json, as README.md describes it, with a line break at the end.
 std::string jsonReport(const MendRun& run);

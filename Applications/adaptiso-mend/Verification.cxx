@@ -10,6 +10,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Tiles.h"
+#include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -79,19 +80,25 @@ Verification measure(const VerifiedSurface& verified, const MendStatistics& stat
                            const char* name) {
         if (from.triangles.empty()) return;
         const DistanceStatistics found = sampledDistance(from, to, false).aToB;
-        requireWithin(found.maxMm, boundMm + verified.roundingMm, surface, input, name, kBroken);
+        requireWithin(found.maxMm, boundMm + verified.shiftMm, surface, input, name, kBroken);
         measured.samples += found.measured();
         measured.maxMm = std::max(measured.maxMm, found.maxMm);
     };
-    const double roundingMm = verified.roundingMm;
-    const double otherCapMm = roundingMm + statistics.maxErrorMm;  // one of two is listed
-    check(apartFrom(surface, {{statistics.filled, roundingMm},
+    const double shiftMm = verified.shiftMm;
+    const double otherCapMm = shiftMm + statistics.maxErrorMm;  // one of two is listed
+    check(apartFrom(surface, {{statistics.filled, shiftMm},
                               {statistics.cutHandles, otherCapMm},
                               {statistics.filledHandles, otherCapMm}}),
           input, statistics.resultToInputMm, "the input");
-    check(apartFrom(input, {{statistics.inner, roundingMm}, {statistics.thin, roundingMm}}),
-          surface, statistics.inputToResultMm, "the result");
+    check(apartFrom(input, {{statistics.inner, shiftMm}, {statistics.thin, shiftMm}}), surface,
+          statistics.inputToResultMm, "the result");
     return measured;
+}
+
+InvalidInput tooFewDigits(const std::string& fault, const MendRun& run) {
+    return InvalidInput(baseName(run.output.file) + ": " + std::string(run.output.format->name) +
+                        " keeps too few digits of this surface's coordinates, with which " + fault +
+                        "; write .vtp or .ply");
 }
 
 }  // namespace
@@ -103,11 +110,17 @@ void verify(const VerifiedSurface& surface, const TriangleMesh& result, MendRun&
     if (!fault.empty()) {
         const std::string own = soundnessFault(result, checkTopology(result), mayBeOpen);
         if (!own.empty()) throw InternalError(kBroken + own);
-        throw InvalidInput(baseName(run.output.file) + ": " + std::string(run.output.format->name) +
-                           " keeps too few digits of this surface's coordinates, with which " +
-                           fault + "; write .vtp or .ply");
+        throw tooFewDigits(fault, run);
     }
     run.verification = measure(surface, run.statistics);
+}
+
+void verifyAround(const TriangleMesh& surface, const TriangleMesh& fixed, MendRun& run) {
+    const NestingReport report = checkNesting(fixed, surface, {.maxPairs = 0});
+    run.gapMm = report.gap.nearest.distanceMm;
+    if (report.isStrictlyNested() && run.gapMm >= *run.command.gapMm) return;
+    throw tooFewDigits(
+        "it lies " + formatBound(run.gapMm) + " mm around " + baseName(run.command.around), run);
 }
 
 }  // namespace adaptiso::mender

@@ -13,7 +13,10 @@ namespace {
 
 void checkCombinations(const MendCommand& command) {
     if (command.input.empty()) throw UsageError("MESH is missing: the surface to mend");
-    checkInputCoordinates(command.inputCoordinates, 1);
+    checkInputCoordinates(command.inputCoordinates, command.around.empty() ? 1 : 2);
+    if (command.around.empty() == command.gapMm.has_value()) {
+        throw UsageError("--around FIXED, --gap MM: each needs the other");
+    }
     if (command.output.empty() && !command.isDryRun) {
         throw UsageError("--output is missing: the file to write (or --dry-run)");
     }
@@ -22,6 +25,9 @@ void checkCombinations(const MendCommand& command) {
     }
     if (command.aim.removesHandles && command.aim.leavesHolesOpen) {
         throw UsageError("--ball takes closed surfaces: not with --open");
+    }
+    if (command.gapMm && command.aim.leavesHolesOpen) {
+        throw UsageError("--around takes closed surfaces: not with --open");
     }
 }
 
@@ -34,6 +40,8 @@ constexpr const char* kFooter = R"(Examples:
       holes up to 20 mm wide are closed; --open leaves wider ones open
   adaptiso-mend skull.ply --ball -o ball.ply
       handles are cut or filled, whichever takes the smaller disc
+  adaptiso-mend skull.stl --around brain.stl --gap 2 -o around.stl
+      then moved out where it lies less than 2 mm around the brain
 
 Exit codes: 0 mended, or sound already, 1 it can't be mended as asked, or a
 warning with --strict, 2 wrong usage, 3 bad input (or no memory or disk left),
@@ -51,7 +59,13 @@ void declareMendOptions(CLI::App& app, MendCommand& command) {
         "MESH", "", command.input,
         "A mesh of triangles or polygons, in any format adaptiso-mesh writes, with any faults");
     declareInputCoordinates(OptionGroup(app, "Input"), command.inputCoordinates, "the mesh");
-    OptionGroup(app, "Extent").rows(mendOptions(), command.aim);
+    const OptionGroup extent(app, "Extent");
+    extent.rows(mendOptions(), command.aim);
+    extent.text("--around", "FIXED", command.around,
+                "Move the result outward where it must, to lie around this surface. Each is in "
+                "one piece");
+    extent.number("--gap", "MM", command.gapMm, {.least = 0, .isAbove = true, .unit = "mm"},
+                  "Least distance to that surface (a number above 0, in mm)");
     const OptionGroup output(app, "Output");
     output.text("-o,--output", "OUT", command.output,
                 "The file to write. The format follows from the extension: " + meshExtensions());

@@ -122,6 +122,8 @@ class Truth(CheckTest):
         self.assertTrue(report["passed"])
         report = self.check("--nested", "inner.off", "outer.off", "--min-gap", "10.1")
         self.assertEqual(report["nesting"]["pairs"][0]["failed"], ["minGap"])
+        done = self.run_check("--nested", "inner.off", "outer.off", "--min-gap", "10.1")
+        self.assertIn("adaptiso-mend outer.off --around inner.off --gap 10.1 -o mended-outer.off\n", done.stdout)
 
     def test_isosurface(self):
         """100 at 8 voxels of 2 mm from the middle, 10 less for each further out."""

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import re
+import struct
 import subprocess
 
 from support import BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, lines, main
@@ -179,6 +180,54 @@ class Balls(MendTest):
         self.stays_out(USAGE, "--ball takes closed surfaces", "ring.off", "--ball", "--open", "-o", "out.off")
 
 
+class Around(MendTest):
+    def test_two_crossing_shells_lie_apart_by_the_gap(self):
+        """A ball of radius 30 shifted by 9, and one of 40 about the origin: they are 1 apart on one side."""
+        self.write("inner.off", shifted(icosphere(30), 9))
+        self.write("outer.off", BALL)
+        fixed = self.path("inner.off").read_bytes()
+        report = self.mend("outer.off", "--around", "inner.off", "--gap", 2, "-o", "around.off")
+        self.assertEqual((report["found"]["sound"], report["output"]["copied"]), (True, False))
+        around = report["output"]["around"]
+        self.assertEqual((around["file"], self.path("inner.off").read_bytes()), ("inner.off", fixed))
+        self.assertTrue(2 <= around["gapMm"] < 2.1, around)
+        self.assertTrue(0.9 < around["largestMoveMm"] < 2, around)
+        # all that separates the two is the move, and the digits of the file
+        self.assertAlmostEqual(report["output"]["resultToInputMm"], around["largestMoveMm"], delta=1e-3)
+        self.assertTrue(report["output"]["verification"]["maxMm"] <= report["output"]["inputToResultMm"])
+        self.assertTrue(self.check("around.off")["passed"])
+        nested = self.check("inner.off", "around.off", "--nested")
+        self.assertTrue(nested["passed"], nested)
+        again = self.mend("around.off", "--around", "inner.off", "--gap", 2, "-o", "again.off")
+        self.assertEqual((again["output"]["copied"], again["output"]["around"]["movedVertices"]), (True, 0))
+
+    def test_values_are_those_of_where_a_point_was(self):
+        self.write("inner.off", shifted(icosphere(30), 9))
+        self.path("in.ply").write_text(ply(BALL, "property double height", [(p[0],) for p in BALL[0]]))
+        self.mend("in.ply", "--around", "inner.off", "--gap", 2, "-o", "out.ply", "--input-coordinates", "ras",
+                  "--input-coordinates", "ras")
+        header, _, body = self.path("out.ply").read_bytes().partition(b"end_header\n")
+        kinds = [{b"float": "f", b"double": "d"}[kind] for kind in re.findall(rb"property (float|double) ", header)]
+        self.assertEqual(len(kinds), 4)
+        rows = struct.iter_unpack("<" + "".join(kinds), body[:struct.calcsize("<" + "".join(kinds)) * len(BALL[0])])
+        self.assertEqual([row[3] for row in rows], [p[0] for p in BALL[0]])
+
+    def test_what_can_not_lie_around(self):
+        self.write("ball.off", BALL)
+        self.write("apart.off", shifted(icosphere(10), 200))
+        self.write("two.off", together(icosphere(5), shifted(icosphere(5), 20)))
+        given = ("ball.off", "-o", "out.off")
+        self.stays_out(CHECK_FAILED, "ball.off: can't be mended as asked: --around apart.off: they are apart",
+                       *given, "--around", "apart.off", "--gap", 2)
+        self.stays_out(BAD_INPUT, "two.off: --around takes a closed, .*; mend it first", *given, "--around", "two.off",
+                       "--gap", 1)
+        self.stays_out(CHECK_FAILED, ".* the surface to move is not closed, or in pieces", "two.off", "-o", "out.off",
+                       "--around", "ball.off", "--gap", 1)
+        for more in (("--gap", 2), ("--around", "apart.off")):
+            self.stays_out(USAGE, "--around FIXED, --gap MM: each needs the other", *given, *more)
+        self.stays_out(USAGE, "--around takes closed surfaces", *given, "--around", "apart.off", "--gap", 2, "--open")
+
+
 class Refusals(MendTest):
     def test_what_can_not_be_mended_as_asked(self):
         self.write("cup.off", cup(BALL, 20))
@@ -209,7 +258,8 @@ class Refusals(MendTest):
 class Reports(MendTest):
     def test_keys_are_the_documented_ones(self):
         self.write("two.off", together(BALL, shifted(BALL, 30)))
-        report = self.mend("two.off", "--max-error", 1, "-o", "out.vtp")
+        self.write("inner.off", icosphere(20))
+        report = self.mend("two.off", "--max-error", 1, "--around", "inner.off", "--gap", 1, "-o", "out.vtp")
         self.assertEqual(report["schema"], "adaptiso-mend/1")
         self.assertEqual(keys_of(report), documented_keys(README))
 
@@ -240,6 +290,8 @@ class Readme(MendTest):
                                            [(p[2],) for p in soup(small)[0]]))
         self.mend("in.ply", "-o", "heights.vtp")
         self.path("in.ply").unlink()
+        self.write("inner.off", shifted(icosphere(30), 9))
+        self.write("outer.off", BALL)
         given = set(self.names())
         examples = re.search(r"## Examples.*?```sh\n(.*?)```", README.read_text(), re.DOTALL)
         done = subprocess.run(["bash", "-eu", "-o", "pipefail", "-c", examples.group(1)],
@@ -247,7 +299,7 @@ class Readme(MendTest):
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stdout), (0, "the hole is wider\n"), done.stderr)
         self.assertEqual(set(self.names()) - given, {"one.stl", "plan.json", "mended.vtp",
-                                                     "closed.off", "open.off", "ball.off"})
+                                                     "closed.off", "open.off", "ball.off", "around.off"})
 
 
 if __name__ == "__main__":

@@ -42,6 +42,19 @@ class Mend(unittest.TestCase):
         self.assertAlmostEqual(cut.report["cut_handles"][0]["area"] / (9 * np.pi), 1, delta=0.05)
         self.assertTrue(adaptiso.check(cut))
 
+    def test_lies_around_another_surface(self):
+        inner, outer = ball(24, 7), ball(32, 8)
+        inner = (inner.vertices + 5, inner.faces)
+        moved = adaptiso.mend(outer.vertices, outer.faces, around=inner, gap=0.5)
+        self.assertGreaterEqual(moved.report["gap"], 0.5)
+        self.assertGreater(moved.report["moved_vertices"], 0)
+        self.assertGreaterEqual(moved.report["result_to_input"], moved.report["largest_move"])
+        self.assertTrue(adaptiso.check_nested([inner, moved], profile="view"))
+        with self.assertRaisesRegex(adaptiso.Error, "each needs the other"):
+            adaptiso.mend(outer, gap=1)
+        with self.assertRaisesRegex(adaptiso.Error, "around: they are apart"):
+            adaptiso.mend(outer.vertices, outer.faces, around=(inner[0] + 100, inner[1]), gap=1)
+
     def test_a_sound_mesh_stays_as_it_is(self):
         whole = ball()
         mended = adaptiso.mend(whole)

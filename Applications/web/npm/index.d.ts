@@ -68,6 +68,9 @@ export interface MendOptions extends RunOptions {
   open?: boolean;
   /** Cut or fill every handle. */
   ball?: boolean;
+  /** A closed surface in one piece: the result is moved outward where it must, to lie `gapMm` around it. */
+  around?: MeshInput;
+  gapMm?: number;
 }
 /** adaptiso-mend: a sound solid of any mesh. */
 export function mend(surface: MeshInput, options?: MendOptions): Promise<MeshResult>;

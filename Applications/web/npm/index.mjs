@@ -238,9 +238,11 @@ function aimOf({ maxErrorMm, triangles }) {
     ...(triangles === undefined ? [] : ["--triangles", String(triangles)])];
 }
 
-async function makeSurface(program, args, file, options) {
-  const { iso: _iso, maxErrorMm: _mm, triangles: _count, ...rest } = options, [placed] = apart([file]);
-  const done = await runReported(program, [...args, ...aimOf(options), "--coordinates", "ras", "-o", kSurface], [placed.path], [placed], rest);
+/** `more`: options whose value is a file, each with it. */
+async function makeSurface(program, args, file, options, more = []) {
+  const { iso: _iso, maxErrorMm: _mm, triangles: _count, ...rest } = options;
+  const files = apart([file, ...more.map(([, each]) => each)]), others = more.flatMap(([option], n) => [option, files[n + 1].path]);
+  const done = await runReported(program, [...args, ...others, ...aimOf(options), "--coordinates", "ras", "-o", kSurface], [files[0].path], files, rest);
   return { ...done, mesh: parsePly(writtenFile(program, done, kSurface).bytes) };
 }
 
@@ -252,9 +254,10 @@ export async function simplify(surface, options = {}) {
   return makeSurface("simplify", [], await meshFile(surface), options);
 }
 
-export async function mend(surface, { maxHoleMm, open = false, ball = false, ...options } = {}) {
-  return makeSurface("mend", [...(maxHoleMm === undefined ? [] : ["--max-hole", String(maxHoleMm)]), ...(open ? ["--open"] : []), ...(ball ? ["--ball"] : [])],
-    await meshFile(surface), options);
+export async function mend(surface, { maxHoleMm, open = false, ball = false, around, gapMm, ...options } = {}) {
+  const args = [...(maxHoleMm === undefined ? [] : ["--max-hole", String(maxHoleMm)]), ...(open ? ["--open"] : []), ...(ball ? ["--ball"] : []),
+    ...(gapMm === undefined ? [] : ["--gap", String(gapMm)])];
+  return makeSurface("mend", args, await meshFile(surface), options, around === undefined ? [] : [["--around", await meshFile(around, "around.ply")]]);
 }
 
 export async function check(surfaces, options = {}) {

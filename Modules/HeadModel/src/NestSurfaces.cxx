@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "PushApart.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshQuality/Nesting.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
@@ -34,10 +36,7 @@ void checkInput(const std::vector<TriangleMesh>& surfaces, const NestOptions& op
                            ", must be above 0");
     }
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
-        const TopologyReport report = checkTopology(surfaces[n]);
-        if (report.isSound() && report.components.size() == 1 && report.components[0].isOutward()) {
-            continue;
-        }
+        if (isOneSolid(surfaces[n])) continue;
         throw InvalidInput("nestSurfaces: surface " + std::to_string(n) +
                            " is not one closed outward manifold without degenerate triangles");
     }
@@ -65,7 +64,7 @@ std::vector<Finding> findHopeless(const std::vector<TriangleMesh>& surfaces) {
             report.relation == NestingRelation::Apart) {
             findings.push_back({"surfaces " + std::to_string(n) + " and " + std::to_string(n + 1) +
                                     ": they are " + std::string(toString(report.relation)) +
-                                    ", the first must lie inside the second",
+                                    ", the second must lie around the first",
                                 report.gap.nearest.pointA});
         }
     }
@@ -137,6 +136,30 @@ NestResult nestSurfaces(const std::vector<TriangleMesh>& surfaces, const NestOpt
         result.gaps.clear();
     }
     return result;
+}
+
+bool isOneSolid(const TriangleMesh& mesh) {
+    const TopologyReport report = checkTopology(mesh);
+    return report.isSound() && report.components.size() == 1 && report.components[0].isOutward();
+}
+
+NestedAround nestAround(const TriangleMesh& mesh, const TriangleMesh& fixed, double gapMm) {
+    if (!isOneSolid(mesh)) throw InvalidInput("the surface to move is not closed, or in pieces");
+    if (!isOneSolid(fixed)) {
+        throw InvalidInput("the fixed surface is no closed, oriented 2-manifold in one piece");
+    }
+    NestOptions options;
+    options.minGapsMm = {gapMm};
+    options.maxMoveMm = norm(boundingBox(mesh).size());  // the number of moves is bounded
+    NestResult result = nestSurfaces({fixed, mesh}, options);
+    if (!result.findings.empty()) {
+        const auto& [what, at] = result.findings.front();
+        const std::size_t which = what.find(": ");  // surface 1; one of them, as numbers differ
+        throw InvalidInput((which == std::string::npos ? what : what.substr(which + 2)) +
+                           ", around " + formatShort(at.x) + ", " + formatShort(at.y) + ", " +
+                           formatShort(at.z));
+    }
+    return {std::move(result.surfaces[1].points), result.moves[1], result.gaps[0]};
 }
 
 }  // namespace adaptiso

@@ -220,10 +220,10 @@ def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str =
                       "a sequence of surfaces, from inside out")
     if len(surfaces) < 2:
         raise Error(f"meshes: are {len(surfaces)}, must be two or more")
-    told = _names(surfaces, names)
+    told = names_of(surfaces, names)
     data = [mesh_data_of(mesh, not is_path(mesh), stated)
             for mesh, stated in zip(surfaces, stated_frames(input_coordinates, surfaces))]
-    _require_one_frame(data, surfaces, told)
+    require_one_frame(data, surfaces, told)
     text = _adaptiso.check_nested(
         data, told, word("profile", profile, PROFILES), checked("check_nested", options),
         checked_threads(threads))
@@ -270,7 +270,7 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True,
     """
     data = [mesh_data_of(mesh, False, stated)
             for mesh, stated in zip((a, b), stated_frames(input_coordinates, (a, b)))]
-    _require_one_frame(data, (a, b), ["a", "b"])
+    require_one_frame(data, (a, b), ["a", "b"])
     text = _adaptiso.compare(data[0], data[1], count("samples", samples, 1, 10**9),
                              flag("symmetric", symmetric), checked_threads(threads),
                              checked_progress(progress))
@@ -280,7 +280,7 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True,
     return comparison
 
 
-def _names(surfaces: Sequence[Any], names: Optional[Sequence[str]]) -> List[str]:
+def names_of(surfaces: Sequence[Any], names: Optional[Sequence[str]]) -> List[str]:
     if names is None:
         return [base_name(checked_path("mesh", mesh)) if is_path(mesh) else f"surface {n + 1}"
                 for n, mesh in enumerate(surfaces)]
@@ -290,7 +290,7 @@ def _names(surfaces: Sequence[Any], names: Optional[Sequence[str]]) -> List[str]
     return told
 
 
-def _require_one_frame(data: Sequence[_adaptiso.MeshData], surfaces: Sequence[Any],
+def require_one_frame(data: Sequence[_adaptiso.MeshData], surfaces: Sequence[Any],
                        names: Sequence[str]) -> None:
     require_known_frames([mesh.frame for mesh in data], names)
     endings = {checked_path("mesh", surface).rpartition(".")[2].lower()

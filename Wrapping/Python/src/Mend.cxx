@@ -14,6 +14,7 @@
 #include "OptionRows.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Warning.h"
+#include "adaptiso/HeadModel/NestSurfaces.h"
 
 namespace adaptiso::python {
 namespace {
@@ -70,12 +71,30 @@ std::string inWordsOfArguments(std::string text) {
     return text;
 }
 
-py::tuple mendMesh(const MeshData& data, MendOptions options, int threads, py::object progress) {
+/// A surface to lie around, in the frame of the mesh to mend, and how far away.
+struct Around {
+    const MeshData* fixed;  ///< null: none
+    double gap;
+};
+
+py::tuple mendMesh(const MeshData& data, MendOptions options, const Around& around, int threads,
+                   py::object progress) {
     Watcher watcher(std::move(progress));
     options.progress = watcher.callback();
     Mended result;
+    NestedAround nested;
     try {
-        watcher.run(threads, [&] { result = mend(data.mesh(), options); });
+        watcher.run(threads, [&] {
+            result = mend(data.mesh(), options);
+            if (around.fixed == nullptr) return;
+            try {
+                nested = nestAround(result.mesh, around.fixed->mesh(), around.gap);
+            } catch (const InvalidInput& refusal) {
+                throw InvalidInput(std::string("around: ") + refusal.what());
+            }
+            result.mesh.points = nested.points;
+            if (nested.move.movedVertices > 0) result.mesh.normals.clear();
+        });
     } catch (const InvalidInput& refusal) {
         throw InvalidInput(inWordsOfArguments(refusal.what()));
     }
@@ -83,7 +102,12 @@ py::tuple mendMesh(const MeshData& data, MendOptions options, int threads, py::o
         std::make_shared<MeshData>(MeshData::asStored(std::move(result.mesh), data.frame()));
     if (data.image()) made->setImage(*data.image());
     made->setFrameKnown(data.isFrameKnown());
+    result.statistics.resultToInputMm += nested.move.maximumMm;
+    result.statistics.inputToResultMm += nested.move.maximumMm;
     py::dict found = toDict(result.statistics);
+    found["gap"] = around.fixed == nullptr ? py::object(py::none()) : py::cast(nested.gap.mm);
+    found["moved_vertices"] = nested.move.movedVertices;
+    found["largest_move"] = nested.move.maximumMm;
     std::vector<Warning> warnings;
     if (options.maxErrorMm) {
         const auto warning = boundOverSize("max_error", *options.maxErrorMm,
@@ -99,12 +123,14 @@ py::tuple mendMesh(const MeshData& data, MendOptions options, int threads, py::o
 void declareMend(py::module_& module) {
     module.def(
         "mend_mesh",
-        [](const MeshData& mesh, const py::dict& options, int threads, py::object progress) {
+        [](const MeshData& mesh, const py::dict& options, const MeshData* around, double gap,
+           int threads, py::object progress) {
             MendOptions mended;
             take(mendOptions(), mended, options);
-            return mendMesh(mesh, std::move(mended), threads, std::move(progress));
+            return mendMesh(mesh, std::move(mended), {around, gap}, threads, std::move(progress));
         },
-        py::arg("mesh"), py::arg("options"), py::arg("threads"), py::arg("progress"));
+        py::arg("mesh"), py::arg("options"), py::arg("around"), py::arg("gap"), py::arg("threads"),
+        py::arg("progress"));
 }
 
 }  // namespace adaptiso::python

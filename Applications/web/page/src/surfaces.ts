@@ -159,15 +159,17 @@ export class MendTab {
     for (const [option, id] of [["--max-error", "mend-error"], ["--max-hole", "mend-hole"]]) {
       if (byId<HTMLInputElement>(id).value !== "") args.push(option, number(id));
     }
+    if (isChecked("mend-ball")) args.push("--ball");
     args.push("-o", output, "--json", kReport);
     const run: Run = { program: "adaptiso-mend", args, files, memoryBytes: this.meshes.memoryBytes }, done = await task.run(run);
     if (done === undefined || done.exitCode !== 0) return;
     const report = reportOf(done) as { found: { sound: boolean }; output: { triangles: number; keptTriangles: number; resultToInputMm: number;
-      inputToResultMm: number; filled: Place[]; inner: Place[]; thin: Place[] } };
+      inputToResultMm: number; filled: Place[]; inner: Place[]; thin: Place[]; cutHandles: Place[]; filledHandles: Place[] } };
     const made = report.output, [result] = outputsOf(done);
     const count = (places: Place[], one: string, many: string): string[] => (places.length === 0 ? [] : [`${places.length} ${places.length === 1 ? one : many}`]);
     const changes = [...count(made.filled, "hole closed", "holes closed"), ...count(made.inner, "inner part dropped", "inner parts dropped"),
-      ...count(made.thin, "thin part dropped", "thin parts dropped")];
+      ...count(made.thin, "thin part dropped", "thin parts dropped"), ...count(made.cutHandles, "handle cut", "handles cut"),
+      ...count(made.filledHandles, "handle filled", "handles filled")];
     const most = Math.max(made.resultToInputMm, made.inputToResultMm);
     await task.show(report.found.sound ? `${file.path} is sound: it stays as it is`
       : `A sound solid of ${formatCount(made.triangles)} triangles, ${formatCount(made.keptTriangles)} of them as they were`

@@ -65,4 +65,20 @@ struct NestResult {
 /// whatever the number of threads.
 NestResult nestSurfaces(const std::vector<TriangleMesh>& surfaces, const NestOptions& options = {});
 
+/// One closed, outward 2-manifold in one piece, without degenerate triangles: what nestSurfaces()
+/// takes.
+bool isOneSolid(const TriangleMesh& mesh);
+
+/// A surface that was moved outward, where it had to be.
+struct NestedAround {
+    std::vector<Vec3> points;
+    SurfaceMove move;
+    NestedGap gap;
+};
+
+/// The points of `mesh`, moved until it lies around `fixed`, at least `gapMm` away everywhere: by
+/// nestSurfaces(). \param fixed  as isOneSolid() has it \param gapMm  > 0
+/// \throws InvalidInput  either is no such surface, or that can't be had; the message has the place
+NestedAround nestAround(const TriangleMesh& mesh, const TriangleMesh& fixed, double gapMm);
+
 }  // namespace adaptiso
