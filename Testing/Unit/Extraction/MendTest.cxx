@@ -352,7 +352,15 @@ TEST(Mend, RefusesCoordinatesWithoutDigits) {
 }
 
 TEST(Mend, RefusesWhatEnclosesNothing) {
-    EXPECT_THROW(mend(planeMesh(4, 1), within(0.05)), InvalidInput);
+    const TriangleMesh triangle{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {{0, 1, 2}}};
+    for (const TriangleMesh& mesh : {planeMesh(4, 1), triangle, planeMesh(40, 1)}) {
+        try {
+            mend(mesh);
+            ADD_FAILURE() << mesh.triangles.size();
+        } catch (const MendRefusal& refusal) {
+            EXPECT_NE(std::string(refusal.what()).find("enclose no volume"), std::string::npos);
+        }
+    }
     EXPECT_THROW(mend({}), InvalidInput);
     EXPECT_THROW(mend(cubeMesh(), within(0)), InvalidInput);
 }

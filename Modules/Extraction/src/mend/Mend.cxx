@@ -196,6 +196,25 @@ void splitFans(TriangleMesh& mesh) {
                        formatMeasure(maxHoleMm) + " mm");
 }
 
+[[noreturn]] void refuseNothing(double maxErrorMm) {
+    throw InvalidInput("mend: the triangles enclose no volume that the bound, " +
+                       formatShort(maxErrorMm) + " mm, leaves");
+}
+
+/// Refuses triangles behind which the winding number is nowhere a half: elsewhere it is less, as it
+/// is harmonic.
+void requireVolume(const MendInput& input, const detail::WindingField& field, double boundMm,
+                   double maxErrorMm) {
+    const double depthMm = spacingFor(boundMm) / 4;  // what is thinner is dropped
+    for (std::int64_t t = 0; t < std::ssize(input.mesh.triangles); ++t) {
+        const Corners c = cornersOf(input.mesh, t);
+        const Vec3 middle = (1.0 / 3) * (c[0] + c[1] + c[2]);
+        const Vec3 outward = normalized(areaVector2(c[0], c[1], c[2]));
+        if (field.at(middle - depthMm * outward) >= 0.5) return;
+    }
+    refuseNothing(maxErrorMm);
+}
+
 /// Refuses a hole that is too wide before work begins, where a cap closes it.
 void requireNarrowCaps(const MendInput& input, double boundMm, double maxHoleMm) {
     if (input.capOf.empty()) return;
@@ -331,6 +350,7 @@ TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, cons
                            (statistics.maxErrorMm - statistics.movedMm);
     const double maxHoleMm =
         options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * norm(box.size()));
+    requireVolume(input, field, boundMm, statistics.maxErrorMm);
     if (!options.leavesHolesOpen) {
         requireNarrowCaps(input, boundMm, maxHoleMm);
         rehearse(input, tree, field, box, boundMm, maxHoleMm);
@@ -344,10 +364,7 @@ TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, cons
         dropCrumbs(assembly, lattice.spacing());
         statistics.filled.clear();
         statistics.leftOpen.clear();
-        if (assembly.mesh.triangles.empty()) {
-            throw InvalidInput("mend: the triangles enclose no volume that the bound, " +
-                               formatShort(statistics.maxErrorMm) + " mm, leaves");
-        }
+        if (assembly.mesh.triangles.empty()) refuseNothing(statistics.maxErrorMm);
         statistics.cells = std::ssize(region.cells());
         statistics.latticeMm = region.isEmpty() ? 0 : lattice.spacing();
         countOrigins(assembly, input, statistics);
