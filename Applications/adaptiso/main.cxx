@@ -4,11 +4,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "Common/ChildProcess.h"
 #include "Common/CommonOptions.h"
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
@@ -46,7 +48,9 @@ std::string footer() {
            "      the same as: adaptiso-mesh brain.nii.gz --iso 100\n"
            "  adaptiso mesh --help\n"
            "  adaptiso help mesh iso\n"
-           "      of its --help the part on --iso\n\n"
+           "      of its --help the part on --iso\n"
+           "  adaptiso help decimate\n"
+           "      which program does it, by which option: words of other tools too\n\n"
            "Exit codes: those of the program; 2 when there is no such program.";
 }
 
@@ -71,18 +75,34 @@ bool isProgram(std::string_view word) {
     return std::ranges::any_of(kPrograms, [&](const Entry& entry) { return word == entry.word; });
 }
 
+std::filesystem::path ownFolder() {
+    std::error_code error;
+    return std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+}
+
 /// Becomes the program that lies beside this one. \return only if it cannot be started
 /// \param argv  its arguments follow the second
 int start(const std::string& word, char** argv) {
     const std::string name = "adaptiso-" + word;
-    std::error_code error;
-    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-    const std::string program = (self.parent_path() / name).string();
+    const std::string program = (ownFolder() / name).string();
     std::string first = name;
     argv[1] = first.data();
     execv(program.c_str(), argv + 1);
     printError("adaptiso", program + ": can't be started: " + std::strerror(errno));
     return kExitBadInput;
+}
+
+/// Prints what each program's --help has on a word. \return  whether any has something
+bool printHelpOn(const std::string& word) {
+    bool isKnown = false;
+    for (const Entry& entry : kPrograms) {
+        const std::string name = std::string("adaptiso-") + entry.word;
+        const ChildResult said = runChild(ownFolder() / name, {"--help", word});
+        if (!said.isGood()) continue;
+        std::cout << (isKnown ? "\n" : "") << name << '\n' << said.output;
+        isKnown = true;
+    }
+    return isKnown;
 }
 
 }  // namespace
@@ -99,6 +119,7 @@ int main(int argc, char** argv) {
         argv[2] = option.data();
         return start(program, argv);
     }
+    if (helps && argc == 3 && argv[2][0] != '-' && printHelpOn(argv[2])) return 0;
     const bool isOwn = argc < 2 || word == "help";
     const char* const own[] = {argv[0], argc > 2 ? argv[2] : "--help"};
     return adaptiso::runApp(

@@ -197,6 +197,13 @@ class OneCommand(ApplicationTest):
         done = subprocess.run([link, "check", "--version"], cwd="/", text=True, capture_output=True)
         self.assertRegex(done.stdout, "^adaptiso-check ")
 
+    def test_finds_options_by_the_words_of_other_tools(self):
+        done = run_program(self.folder, "adaptiso", "help", "decimate")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("adaptiso-mesh\ndecimate: did you mean --reduction?\n\n", done.stdout)
+        self.assertIn("adaptiso-bem\ndecimate: did you mean --vertices?\n\n", done.stdout)
+        self.assertEqual(run_program(self.folder, "adaptiso", "help", "no-such-word").returncode, USAGE)
+
     def test_refuses_other_words(self):
         done = run_program(self.folder, "adaptiso", "mehs", "--iso", "3")
         self.assertEqual(done.returncode, USAGE)

@@ -26,7 +26,7 @@ constexpr Habit kHabits[] = {
      "inputs need no option; give the file alone"},
     {"seg segmentation dseg aparc parcellation", "bem", "labels", ""},
     {"mask brain brainmask bet", "bem", "brain-mask", ""},
-    {"preflood atlas gcaatlas", "bem", "brain-mask",
+    {"watershed preflood atlas gcaatlas", "bem", "brain-mask",
      "--brain-mask takes the brain of any extraction, mri_watershed's too"},
     {"mask masks", "labels", "join", ""},
     {"mask", "mesh", "crop", "fslmaths IMAGE -mas MASK OUT masks it; --crop cuts a box"},
