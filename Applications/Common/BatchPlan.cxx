@@ -19,6 +19,7 @@
 #include "Common/Verdict.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Phrases.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextCells.h"
 #include "adaptiso/Core/TextLines.h"
 
@@ -55,7 +56,23 @@ std::string textOf(const fs::path& list, const std::string& option) {
     return text;
 }
 
-void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
+/// Of an input that is no file and looks like a value what was meant; empty: there is none.
+std::string strayValue(std::span<const BatchItem> items) {
+    for (const BatchItem& item : items) {
+        for (const fs::path& input : item.inputs) {
+            std::error_code error;
+            const bool isName = input.has_extension() && !parseFiniteNumber(input.string());
+            if (isName || input.has_parent_path() || fs::exists(input, error)) continue;
+            return shown(input.string()) +
+                   ": no such file; several values of an option are given with commas (--labels "
+                   "1,2), or the option again (--iso 80 --iso 100)";
+        }
+    }
+    return {};
+}
+
+void checkOptions(const BatchProgram& program, const BatchOptions& batch,
+                  std::span<const BatchItem> items) {
     const auto require = [](bool isGood, const std::string& message) {
         if (!isGood) throw UsageError(message);
     };
@@ -66,9 +83,11 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch) {
         if (!isIn(program.outputOptions, name)) continue;
         require(name != kOutputOption || batch.outputFolder.empty() || staysBelow(value),
                 name + " " + value + ": must be a name below --output-dir");
-        require(holdsName(value),
-                name + " " + value +
-                    ": needs {name} in it, or the runs for all inputs would write the same");
+        if (holdsName(value) || items.size() == 1) continue;
+        const std::string stray = strayValue(items);
+        require(stray.empty(), stray);
+        require(false, name + " " + value +
+                           ": needs {name} in it, or the runs for all inputs would write the same");
     }
 }
 
@@ -234,7 +253,7 @@ void printTotals(const std::vector<RunRecord>& records, const std::string& thing
 
 int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const BatchOptions& batch,
              const CommonOptions& common) {
-    checkOptions(program, batch);
+    checkOptions(program, batch, items);
     BatchRunning running{batch.outputFolder, batch.summary};
     running.command = commandOf(program, batch);
     const std::vector<PlannedRun> runs = planRuns(program, std::move(items), batch, common);

@@ -63,10 +63,10 @@ std::string reasonOf(std::string error, const std::vector<std::string>& files) {
     std::string kind;
     for (std::size_t n = 0; n < error.size(); ++n) {
         const bool begins = n == 0 || error[n - 1] == ' ' || error[n - 1] == '(';
-        const std::size_t end =
-            std::min(error.find_first_not_of("0123456789.,-+", n), error.size());
+        std::size_t end = std::min(error.find_first_not_of("0123456789.,-+", n), error.size());
         const bool isNumber =
             begins && error.find_first_of("0123456789", n) < end && (error[end - 1] != '.');
+        while (isNumber && error.find_last_of("0123456789", end - 1) != end - 1) --end;
         kind += isNumber ? 'N' : error[n];
         if (isNumber) n = end - 1;
     }

@@ -104,7 +104,8 @@ void addImages(const fs::path& root, const fs::path& folder, const fs::path& tar
 std::vector<fs::path> subjectsOf(const fs::path& root,
                                  const std::vector<std::string>& participants) {
     if (!fs::exists(root / kDescription)) {
-        throw InvalidInput(root.string() + ": is no BIDS dataset, it has no " + kDescription);
+        throw InvalidInput(root.string() + ": is no BIDS dataset, it has no " + kDescription +
+                           R"(, which holds at least {"Name": "...", "BIDSVersion": "1.9.0"})");
     }
     if (participants.empty()) {
         std::vector<fs::path> found = foldersIn(root, "sub-");

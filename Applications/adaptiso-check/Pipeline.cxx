@@ -449,7 +449,8 @@ int runCheck(const CheckOptions& options) {
     if (run.hasFailedCheck() && options.report.page.empty()) {
         run.next = "--report check.html shows where";
     }
-    addPart(run.next, mendingCommand(run), "; ");
+    const std::string mending = mendingCommand(run);
+    if (!mending.empty()) addPart(run.next, mending, "; ");
     run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
     if (options.common.isQuiet || options.common.wantsJsonOnStdout()) printFailed(run);
     if (run.hasUnreadable()) run.verdict.error.clear();  // printed above

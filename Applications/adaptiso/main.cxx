@@ -68,7 +68,9 @@ int refuse(const Options& options) {
     std::vector<std::string> words;
     for (const Entry& entry : kPrograms) words.emplace_back(entry.word);
     const std::string typed = options.words.empty() ? "" : options.words.front().string();
-    throw UsageError(shown(typed) + ": there is no such program" + suggestion(typed, words));
+    const std::string near = suggestion(typed, words);
+    throw UsageError(shown(typed) + ": there is no such program" +
+                     (near.empty() ? "; `adaptiso help WORD` finds what does it" : near));
 }
 
 bool isProgram(std::string_view word) {

@@ -243,16 +243,19 @@ std::string formatLength(double value, int digits) {
 }
 
 std::string formatBound(double value, int digits) {
+    constexpr double kNoise = 1e-9;  // of sums of doubles
+    const auto isLess = [&](const std::string& text) {
+        return parseFiniteNumber(text).value_or(value) < (1 - kNoise) * value;
+    };
     std::string text = formatLength(value, digits);
+    if (!isLess(text)) return text;
+    text = formatLength(value, ++digits);
+    if (!isLess(text)) return text;
     const double last = isLargeFor(digits, value)
                             ? std::pow(10, -digits)
                             : std::pow(10, std::floor(std::log10(value)) - kLeastDigits + 1);
-    constexpr double kNoise = 1e-9;  // of sums of doubles
     // rounded to the nearest it is less by half of the last digit at most
-    if (parseFiniteNumber(text).value_or(value) < (1 - kNoise) * value) {
-        text = formatLength(value + 0.6 * last, digits);
-    }
-    return text;
+    return formatLength(value + 0.6 * last, digits);
 }
 
 std::string formatMeasure(double value) {

@@ -79,11 +79,15 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
                 "; metres |\n";
     }
     if (model.leadField) {
-        rows += std::string("| `lead-field.mat`") +
-                (model.leadField->forward.empty() ? "" : ", `lead-field-fwd.fif` (MNE)") +
-                " | MATLAB, SciPy | potentials at `label`, `elecpos` (rows) of unit dipoles at "
-                "`pos` along `ori` (columns), V/(A m), without a reference, by " +
-                model.leadField->solver + "; " + frame + "; millimetres |\n";
+        rows +=
+            "| `lead-field.mat` | MATLAB, SciPy | potentials at `label`, `elecpos` (rows) of unit "
+            "dipoles at `pos` along `ori` (columns), V/(A m), without a reference, by " +
+            model.leadField->solver + "; " + frame + "; millimetres |\n";
+        if (!model.leadField->forward.empty()) {
+            rows +=
+                "| `lead-field-fwd.fif` | MNE (read_forward_solution) | head coordinates; metres "
+                "|\n";
+        }
     }
     if (options.writesBesa) rows += "| `head.sfp` | BESA | " + frame + "; millimetres |\n";
     if (model.electrodes && !model.electrodes->all().empty()) {

@@ -307,8 +307,8 @@ MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& opti
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) {
         throw FileError(name +
-                        ": this is a folder, not a surface; of the images in one "
-                        "adaptiso-mesh makes surfaces");
+                        ": this is a folder, not a surface; give the files in it (of images "
+                        "adaptiso-mesh makes surfaces)");
     }
     // images may be large: the head is enough
     const std::filesystem::path file = meshio::fiffPart(path).first;

@@ -91,11 +91,11 @@ TEST(FormatLength, KeepsThreeSignificantDigits) {
 TEST(FormatBound, IsNeverLessThanTheBound) {
     EXPECT_EQ(formatBound(0.15), "0.1500");
     EXPECT_EQ(formatBound(0.07), "0.0700");
-    EXPECT_EQ(formatBound(0.15000763), "0.1501");
+    EXPECT_EQ(formatBound(0.15000763), "0.15001");
     EXPECT_EQ(formatBound(0.00015), "0.00015");
     EXPECT_EQ(formatBound(0.000150001), "0.000151");
     EXPECT_EQ(formatBound(9.999e-5), "0.0001");
-    EXPECT_EQ(formatBound(16.00001), "16.0001");
+    EXPECT_EQ(formatBound(16.00001), "16.00001");
     EXPECT_EQ(formatBound(0), "0.0000");
     double value = 1e-9;
     for (int n = 0; n < 3000; ++n) {

@@ -64,8 +64,8 @@ std::string formatFixed(double value, int digits);
 /// "1.50", "0.00015", "1.41e-05"; below 1e-9 mm as formatFixed().
 std::string formatLength(double value, int digits);
 
-/// A bound, as formatLength() but never less than `value` (to 1e-9 of it): 0.15001 is "0.1501" in
-/// four decimals.
+/// A bound, as formatLength() but never less than `value` (to 1e-9 of it), with one decimal more
+/// where it would be: 0.15000763 is "0.15001".
 std::string formatBound(double value, int digits = 4);
 
 /// An area or a volume: as formatRounded() from 100 on, below in three significant digits.
