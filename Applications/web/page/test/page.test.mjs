@@ -544,6 +544,12 @@ for (const browserName of kBrowsers) {
           assert.deepEqual(found, [], `${tab} at ${width}`);
           const wider = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
           assert.ok(wider <= 0, `${tab} at ${width} is ${wider} px too wide`);
+          // whatever the letters: one left edge of all fields, one of all question marks
+          for (const column of [".field input:not([type=radio], [type=checkbox]), .field select", ".field .why"]) {
+            const edges = await page.$$eval(`#${tab} :is(${column})`, (items) => items.filter((item) => item.checkVisibility())
+              .map((item) => Math.round(item.getBoundingClientRect().left)));
+            assert.ok(new Set(edges).size <= 1, `${tab} at ${width}: ${column} at ${edges}`);
+          }
         }
         await press(page, "#tab-mesh");
         await picture(page, `${browserName}-${width}-${scheme}`);
