@@ -83,7 +83,7 @@ export class HeadTab {
     const model = done.files.filter((file) => file.path.startsWith("model/"));
     if (report?.surfaces === undefined || done.exitCode !== 0) return;
     const title = `${report.surfaces.length} surfaces of ${report.surfaces.map((s) => formatCount(s.vertices)).join(", ")} `
-      + "vertices, closed, each inside the next; 0 pairs cross"
+      + "vertices, closed, each inside the next; no triangles cross"
       + report.surfaces.filter(({ seenShare }) => (seenShare ?? 1) < 0.5)
         .map(({ name, seenShare }) => `; ${name.replace("_", " ")} ${Math.round(100 - 100 * (seenShare ?? 0))} % guessed`).join("");
     const rows = report.surfaces.map((surface) => make("tr", {}, make("th", { scope: "row" }, surface.name.replace("_", " ")),

@@ -68,7 +68,7 @@ export class LabelsTab {
     const files = done.files.filter((file) => file.path.startsWith("regions-of-map/"));
     const list = make("ul", { className: "regions" });
     await this.task.show(`${formatCount(regions.length)} regions, ${formatCount(report.walls.triangles)} triangles; no wall farther than `
-      + `${Number(report.walls.errorBoundMm.toPrecision(3))} mm from its full resolution (proved); closed; 0 pairs cross`, run, done, [], [list]);
+      + `${Number(report.walls.errorBoundMm.toPrecision(3))} mm from its full resolution (proved); closed; no triangles cross`, run, done, [], [list]);
     showDrawing();
     this.task.addSave(`Save all regions (${files.length} files, zip)`, "regions.zip", () => zip(files), true);
     const surfaces: Surface[] = [];

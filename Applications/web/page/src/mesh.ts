@@ -100,7 +100,7 @@ export class MeshTab {
           const view = await this.page.view();
           await view?.showSurfaces([{ name: `preview at ${isovalue}`, shape, color: kPreview, opacity: 1 }]);
           const step = this.scan.facts?.previewStep ?? 1;
-          byId("preview").textContent = `Preview: ${formatCount(this.previewTriangles)} triangles of marching cubes`
+          byId("preview").textContent = `Preview: ${formatCount(this.previewTriangles)} triangles, not simplified`
             + (step > 1 ? `, of every ${step}${step === 2 ? "nd" : step === 3 ? "rd" : "th"} voxel` : "");
           Object.assign(byId("preview").dataset, { isovalue, milliseconds: Math.round(performance.now() - begin) });
         } catch (error) {
@@ -141,7 +141,7 @@ export class MeshTab {
     const title = [`${formatCount(surface.triangles)} triangles`,
       ...(surface.errorBoundMm === null ? [] : [`no point farther than ${Number(surface.errorBoundMm.toPrecision(3))} mm from ${source} (proved)`]),
       surface.soundness.closed ? "closed" : "open",
-      `${surface.soundness.crossingPairs ?? 0} pairs cross`,
+      surface.soundness.crossingPairs ? `${formatCount(surface.soundness.crossingPairs)} pairs of triangles cross` : "no triangles cross",
       piecesOf(surface)].join("; ");
     await this.task.show(title, run, done, [output]);
     showDrawing();
