@@ -34,7 +34,8 @@ const { formats, presets } = await choices();
 const formatOptions = (chosen) => formats.map(({ name, extension }) =>
   `<option value="${extension}"${extension === chosen ? " selected" : ""}>${name}</option>`).join("");
 
-const kRun = `<div class="progress" hidden><p class="stage" aria-live="polite"></p><progress max="100" aria-label="Progress"></progress></div>
+const kRun = `<div class="progress" hidden><p class="stage" aria-live="polite"></p><progress max="100" aria-label="Progress"></progress>
+      <button type="button" class="cancel">Cancel</button></div>
     <p class="refusal" role="alert" hidden></p><div class="choices row"></div><div class="result" hidden></div>`;
 const worker = `${read(join(folder, "adaptiso.js"))}\n${await bundle("src/worker.ts", "iife")}`;
 const niivue = inScript(await bundle("node_modules/@niivue/niivue/dist/index.js", "iife", { globalName: "niivue", plugins: [withoutCodecs] }));
@@ -52,7 +53,9 @@ const parts = {
   SCRIPT: script,
   HASHES: [script, niivue].map((text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`).join(" "),
 };
-const page = read(join(here, "src/page.html")).toString().replace(/\{\{([A-Z]+)\}\}/g, (_, name) => parts[name]);
+const page = read(join(here, "src/page.html")).toString()
+  .replace(/\{\{WHY (.*?): (.*?)\}\}/g, `<details class="why" name="why"><summary aria-label="About $1">?</summary><p>$2</p></details>`)
+  .replace(/\{\{([A-Z]+)\}\}/g, (_, name) => parts[name]);
 writeFileSync(join(folder, "adaptiso.html"), page);
 console.log(`${join(folder, "adaptiso.html")}: ${(page.length / 1e6).toFixed(2)} MB`);
 for (const [name, text] of Object.entries(parts)) console.log(`  ${name}: ${(text.length / 1e6).toFixed(2)} MB`);

@@ -29,6 +29,9 @@ export function swatch(color: number[]): HTMLElement {
   return spot;
 }
 
+/** Until View.showSurfaces() replaces it: a mesh of a million triangles takes seconds. */
+export function showDrawing(): void { byId("caption").textContent = "drawing ..."; }
+
 export const formatCount = (count: number): string => count.toLocaleString("en-US");
 export const formatBytes = (bytes: number): string =>
   bytes >= 1e9 ? `${(bytes / 1e9).toFixed(1)} GB` : bytes >= 1e6 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.ceil(bytes / 1e3)} kB`;

@@ -1,9 +1,9 @@
 /** The tab Head model: adaptiso-bem of a T1, with or without a mask, or of a label map. */
-import { byId, formatCount, make, showGiven } from "./dom";
+import { byId, formatCount, make, showDrawing, showGiven } from "./dom";
 import { takeFiles } from "./drop";
 import type { ImageFacts, InputFile, RunResult } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
-import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
+import { count, isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
 import { exampleHead, kExampleTissues } from "./nifti";
 import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
@@ -63,7 +63,7 @@ export class HeadTab {
       if (preset !== "") args.push("--preset", preset);
       else for (const tissue of number("tissues").split(/\s+/).filter((text) => text !== "")) args.push("--tissue", tissue);
     }
-    args.push("--layers", byId<HTMLSelectElement>("layers").value, "--vertices", number("vertices"));
+    args.push("--layers", byId<HTMLSelectElement>("layers").value, "--vertices", count("vertices"));
     if (isChecked("fif")) args.push("--fif");
     if (isChecked("head-gifti")) args.push("--gifti");
     args.push("-o", "model", "--json", kReport);
@@ -83,7 +83,7 @@ export class HeadTab {
     const model = done.files.filter((file) => file.path.startsWith("model/"));
     if (report?.surfaces === undefined || done.exitCode !== 0) return;
     const title = `${report.surfaces.length} surfaces of ${report.surfaces.map((s) => formatCount(s.vertices)).join(", ")} `
-      + "vertices, closed, each inside the next; 0 pairs cross"
+      + "vertices, closed, each inside the next; no triangles cross"
       + report.surfaces.filter(({ seenShare }) => (seenShare ?? 1) < 0.5)
         .map(({ name, seenShare }) => `; ${name.replace("_", " ")} ${Math.round(100 - 100 * (seenShare ?? 0))} % guessed`).join("");
     const rows = report.surfaces.map((surface) => make("tr", {}, make("th", { scope: "row" }, surface.name.replace("_", " ")),
@@ -95,6 +95,7 @@ export class HeadTab {
     await this.task.show(title, run, done, [], [
       make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows)),
       ...(report.notes.length > 0 ? [make("ul", { className: "notes" }, ...report.notes.map((note) => make("li", {}, note)))] : [])]);
+    showDrawing();
     this.task.addSave(`Save the model (${model.length} files, zip)`, "model.zip", () => zip(model), true);
     const surfaces: Surface[] = [];
     for (const [n, surface] of report.surfaces.entries()) {

@@ -1,8 +1,9 @@
 /** The tab Labels: adaptiso-labels of a segmentation. */
-import { byId, formatCount, make, showGiven, swatch } from "./dom";
+import { byId, formatCount, make, showDrawing, showGiven, swatch } from "./dom";
 import { takeFiles } from "./drop";
 import type { ImageFacts, InputFile, RunResult } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
+import { exampleHead } from "./nifti";
 import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
 import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
@@ -27,6 +28,9 @@ export class LabelsTab {
       byId("labels-scan").textContent = scan.path;
       if (this.shown !== undefined) this.setNames(undefined);  // they were the other map's
       this.shown = scan.facts;
+    });
+    byId("labels-example").addEventListener("click", async () => {
+      if (await scan.take(this.task, [{ path: "example-labels.nii", data: exampleHead(true) }], true)) await this.make();
     });
     takeFiles(byId("names-drop"), ([file]) => this.setNames(file));
     byId("labels-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
@@ -64,7 +68,8 @@ export class LabelsTab {
     const files = done.files.filter((file) => file.path.startsWith("regions-of-map/"));
     const list = make("ul", { className: "regions" });
     await this.task.show(`${formatCount(regions.length)} regions, ${formatCount(report.walls.triangles)} triangles; no wall farther than `
-      + `${Number(report.walls.errorBoundMm.toPrecision(3))} mm from its full resolution (proved); closed; 0 pairs cross`, run, done, [], [list]);
+      + `${Number(report.walls.errorBoundMm.toPrecision(3))} mm from its full resolution (proved); closed; no triangles cross`, run, done, [], [list]);
+    showDrawing();
     this.task.addSave(`Save all regions (${files.length} files, zip)`, "regions.zip", () => zip(files), true);
     const surfaces: Surface[] = [];
     const colors = new Map(regions.map((region) => [region.label, colorOf(region)]));

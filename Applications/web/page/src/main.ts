@@ -52,6 +52,20 @@ function listenToTabs(): void {
   }
 }
 
+/** Of two ways, the field of the one that is off is off; an explanation closes when the focus leaves it, or by Escape. */
+function listenToFields(): void {
+  const showWays = (): void => {
+    for (const way of document.querySelectorAll<HTMLInputElement>(".field [type=radio]")) {
+      for (const input of way.closest(".field")?.querySelectorAll("input") ?? []) input.disabled = input !== way && !way.checked;
+    }
+  };
+  document.addEventListener("change", showWays);
+  showWays();
+  const close = (event: Event): void => (event.target as Element).closest?.("details.why")?.removeAttribute("open");
+  document.addEventListener("focusout", close);
+  document.addEventListener("keydown", (event) => { if (event.key === "Escape") close(event); });
+}
+
 function start(): void {
   const engine = makeEngine();
   let view: Promise<View | undefined> | undefined;
@@ -70,6 +84,7 @@ function start(): void {
   new SimplifyTab(page);
   new CompareTab(page);
   listenToTabs();
+  listenToFields();
   byId("version").textContent = kVersion;
   takeStrayFiles();
   document.body.dataset.ready = "true";

@@ -1,12 +1,13 @@
 /** The tab Mesh: an isosurface of the scan. */
-import { byId, formatCount } from "./dom";
+import { byId, formatCount, showDrawing } from "./dom";
 import { stemOf, takeFiles } from "./drop";
 import { Cancelled } from "./engine";
 import { Histogram } from "./histogram";
 import { exampleHead } from "./nifti";
 import type { ImageFacts, RunResult, Shape } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
-import { isChecked, kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
+import { countPieces } from "./shape";
+import { count, isChecked, kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
 import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kPreview: Color = [110, 190, 240];
@@ -34,13 +35,11 @@ export class MeshTab {
     this.histogram = new Histogram(byId<HTMLCanvasElement>("histogram"), (value) => this.setIsovalue(this.rounded(value)));
     takeFiles(byId("drop"), (files) => scan.take(this.task, files));
     byId("example").addEventListener("click", () => this.openExample());
-    byId("auto").addEventListener("click", () => { if (scan.facts?.otsu != null) this.setIsovalue(scan.facts.otsu); });
+    byId("auto").addEventListener("click", () => { if (scan.facts?.otsu != null) this.setIsovalue(this.rounded(scan.facts.otsu)); });
     byId("iso").addEventListener("change", () => this.setIsovalue(Number(number("iso"))));
     byId("iso-slider").addEventListener("input", () => this.setIsovalue(this.rounded(Number(number("iso-slider")))));
     byId("mesh-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
-    for (const id of ["by-distance", "by-count"]) byId(id).addEventListener("change", () => this.showSize());
     scan.onChange(() => this.opened());
-    this.showSize();
     this.setReady(false);
   }
 
@@ -58,9 +57,9 @@ export class MeshTab {
     slider.max = String(facts.histogram?.upper ?? facts.maximum);
     slider.step = String((Number(slider.max) - Number(slider.min)) / 500 || 1);
     const least = Math.min(...facts.geometry.spacingMm);
-    byId<HTMLInputElement>("max-error").placeholder = String(Number((0.15 * least).toPrecision(3)));
+    for (const id of ["max-error", "labels-error"]) byId<HTMLInputElement>(id).placeholder = String(Number((0.15 * least).toPrecision(3)));
     this.histogram.show(facts);
-    this.setIsovalue(facts.otsu ?? (facts.minimum + facts.maximum) / 2);
+    this.setIsovalue(this.rounded(facts.otsu ?? (facts.minimum + facts.maximum) / 2));
   }
 
   private setReady(isReady: boolean): void {
@@ -68,16 +67,11 @@ export class MeshTab {
     for (const id of ["scan-tools", "mesh-form"]) byId(id).hidden = !isReady;
   }
 
-  private showSize(): void {
-    byId<HTMLInputElement>("max-error").disabled = isChecked("by-count");
-    byId<HTMLInputElement>("triangles").disabled = !isChecked("by-count");
-  }
-
-  /** No more digits than the slider has steps for. */
+  /** To four digits of the range. */
   private rounded(value: number): number {
     const facts = this.scan.facts;
     const range = facts === undefined ? 1 : facts.maximum - facts.minimum;
-    const digits = Math.max(0, Math.ceil(Math.log10(500 / Math.max(range, 1e-300))));
+    const digits = Math.max(0, Math.ceil(Math.log10(2000 / Math.max(range, 1e-300))));
     return Number(value.toFixed(Math.min(digits, 20)));
   }
 
@@ -100,10 +94,13 @@ export class MeshTab {
         try {
           const shape = await this.scan.looker.preview(isovalue);
           this.previewTriangles = shape.triangles.length / 3;
+          const { pieces, cavities } = countPieces(shape);
+          byId("largest-drops").textContent = pieces < 2 ? "" : `drops ${formatCount(pieces - 1)} smaller`;
+          byId("fill-drops").textContent = cavities < 1 ? "" : `drops ${formatCount(cavities)}`;
           const view = await this.page.view();
           await view?.showSurfaces([{ name: `preview at ${isovalue}`, shape, color: kPreview, opacity: 1 }]);
           const step = this.scan.facts?.previewStep ?? 1;
-          byId("preview").textContent = `Preview: ${formatCount(this.previewTriangles)} triangles of marching cubes`
+          byId("preview").textContent = `Preview: ${formatCount(this.previewTriangles)} triangles, not simplified`
             + (step > 1 ? `, of every ${step}${step === 2 ? "nd" : step === 3 ? "rd" : "th"} voxel` : "");
           Object.assign(byId("preview").dataset, { isovalue, milliseconds: Math.round(performance.now() - begin) });
         } catch (error) {
@@ -119,7 +116,7 @@ export class MeshTab {
     const scan = this.scan, format = byId<HTMLSelectElement>("format").value, frame = byId<HTMLSelectElement>("frame").value;
     const args = [scan.path, ...scan.readArgs, "--iso", number("iso")];
     if (number("smooth") !== "") args.push("--smooth", number("smooth"));
-    if (isChecked("by-count")) args.push("--triangles", number("triangles"));
+    if (isChecked("by-count")) args.push("--triangles", count("triangles"));
     else if (number("max-error") !== "") args.push("--max-error", number("max-error"));
     if (isChecked("largest")) args.push("--largest");
     if (isChecked("fill")) args.push("--fill-cavities");
@@ -144,9 +141,10 @@ export class MeshTab {
     const title = [`${formatCount(surface.triangles)} triangles`,
       ...(surface.errorBoundMm === null ? [] : [`no point farther than ${Number(surface.errorBoundMm.toPrecision(3))} mm from ${source} (proved)`]),
       surface.soundness.closed ? "closed" : "open",
-      `${surface.soundness.crossingPairs ?? 0} pairs cross`,
+      surface.soundness.crossingPairs ? `${formatCount(surface.soundness.crossingPairs)} pairs of triangles cross` : "no triangles cross",
       piecesOf(surface)].join("; ");
     await this.task.show(title, run, done, [output]);
+    showDrawing();
     this.task.addSave(`Save ${output.path}`, output.path, () => output.bytes, true);
     const report = done.files.find((file) => file.path === kReport);
     if (report !== undefined) this.task.addSave("Save the report (JSON)", `${stemOf(this.scan.path)}.json`, () => report.bytes);

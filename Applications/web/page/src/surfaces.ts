@@ -1,9 +1,10 @@
 /** The tabs Check, Mend, Simplify and Compare: of meshes that are there. */
-import { byId, formatCount, make, showGiven } from "./dom";
+import { byId, formatCount, make, showDrawing, showGiven } from "./dom";
 import { stemOf, takeFiles } from "./drop";
 import { type Looker, Refused } from "./engine";
 import type { InputFile, OpenedMesh, Shape } from "./protocol";
-import { isChecked, kProgramBytes, kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
+import { insideOf } from "./shape";
+import { count, isChecked, kProgramBytes, kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
 import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kOther: Color = [110, 190, 240];
@@ -59,6 +60,7 @@ class Meshes {
   /** What can be read; the program says what can't. */
   async show(files: InputFile[], paint?: (shape: Shape) => Uint8Array | undefined): Promise<Surface[]> {
     const surfaces: Surface[] = [];
+    showDrawing();
     for (const [n, file] of files.entries()) {
       try {
         const { shape } = await this.open(file);
@@ -189,7 +191,7 @@ export class SimplifyTab {
     if (files.length === 0) return task.refuse("Give a mesh first.");
     const [file] = files, format = byId<HTMLSelectElement>("simplify-format").value;
     const args = [file.path];
-    if (isChecked("simplify-by-count")) args.push("--triangles", number("simplify-triangles"));
+    if (isChecked("simplify-by-count")) args.push("--triangles", count("simplify-triangles"));
     else args.push("--max-error", number("simplify-error"));
     const output = `${stemOf(file.path)}-simple${format}`;
     args.push("-o", output, "--json", kReport);
@@ -205,9 +207,10 @@ export class SimplifyTab {
   }
 }
 
-/** Viridis, sampled. */
-const kViridis = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129], [92, 200, 99],
-  [170, 220, 50], [253, 231, 37]];
+/** Of a distance inward, none, and outward; the inside of a surface is red. */
+const kInward: Color = [33, 102, 172], kNone: Color = [240, 240, 240], kOutward: Color = [230, 97, 1];
+const mixed = (share: number): Color =>
+  kNone.map((none, at) => Math.round(none + Math.abs(share) * ((share < 0 ? kInward : kOutward)[at] - none))) as Color;
 
 export class CompareTab {
   private readonly meshes: Meshes;
@@ -219,20 +222,24 @@ export class CompareTab {
     const args = [...files.map((file) => file.path), "--colored", "distance.vtp", "--json", kReport];
     const run: Run = { program: "adaptiso-compare", args, files, memoryBytes: this.meshes.memoryBytes }, done = await task.run(run);
     if (done === undefined || done.exitCode !== 0) return;
-    const { combined, aToB } = (reportOf(done) as { distances: Record<string, { meanMm: number; p95Mm: number; maxMm: number } | null> }).distances;
+    const { b, distances: { combined, aToB } } = reportOf(done) as { b: { volumeMm3: number | null };
+      distances: Record<string, { meanMm: number; p95Mm: number; maxMm: number } | null> };
     const all = combined ?? aToB, mm = (value: number): string => `${Number(value.toPrecision(3))} mm`;
     if (all === null) return;
     await task.show(`mean ${mm(all.meanMm)}, 95 % within ${mm(all.p95Mm)}, maximum ${mm(all.maxMm)}`, run, done, outputsOf(done));
-    const [colored] = outputsOf(done);
+    const [colored] = outputsOf(done), isSigned = b.volumeMm3 !== null;  // an open one has no inside
+    const isInside = isSigned ? insideOf((await this.meshes.open(files[1])).shape) : () => false;
     task.addSave(`Save ${colored.path}`, colored.path, () => colored.bytes, true);
     task.addGlb("distance.glb", await this.meshes.show([{ path: colored.path, data: colored.bytes }], (shape) => {
       if (shape.values === null) return undefined;
       const most = shape.values.reduce((a, b) => Math.max(a, Math.abs(b)), 0) || 1, colors = new Uint8Array(4 * shape.values.length);
       const scale = make("span", { className: "scale" });
-      scale.style.background = `linear-gradient(to right, ${kViridis.map((color) => `rgb(${color.join(" ")})`).join(", ")})`;
-      task.part(".verdict").after(make("p", { className: "hint" }, "0 mm", scale, mm(most)));
+      scale.style.background = `linear-gradient(to right, ${(isSigned ? [-1, 0, 1] : [0, 1]).map((share) => `rgb(${mixed(share).join(" ")})`).join(", ")})`;
+      task.part(".verdict").after(make("p", { className: "hint" }, isSigned ? `${mm(most)} inside` : "0 mm", scale,
+        `${mm(most)} ${isSigned ? "outside" : "from"} ${files[1].path}`));
       shape.values.forEach((value, n) => {
-        colors.set([...kViridis[Math.round(Math.min(1, Math.abs(value) / most) * (kViridis.length - 1))], 255], 4 * n);
+        const [x, y, z] = shape.points.subarray(3 * n);
+        colors.set([...mixed(isInside(x, y, z) ? -value / most : value / most), 255], 4 * n);
       });
       return colors;
     }));

@@ -75,14 +75,13 @@ export class Task {
   async run(run: Run): Promise<RunResult | undefined> {
     this.cancel();
     this.refuse("");
-    const result = this.part(".result"), progress = this.part(".progress");
+    const result = this.part(".result");
     result.hidden = true;
     result.replaceChildren();
     this.setRunning(true);
     const bar = this.part<HTMLProgressElement>("progress"), stage = this.part(".stage");
     stage.textContent = "start";
     bar.removeAttribute("value");
-    progress.hidden = false;
     const fits = Promise.resolve(run.memoryBytes).then((bytes) => {
       this.section.dataset.estimatedBytes = String(Math.round(bytes));
       if (bytes > kMostMemory) throw new Refused(tooLarge(run.files[0].path, bytes, run.program), 3);
@@ -108,7 +107,6 @@ export class Task {
     } finally {
       if (this.job === job) {
         this.job = undefined;
-        progress.hidden = true;
         this.setRunning(false);
       }
     }
@@ -117,10 +115,11 @@ export class Task {
   private setRunning(isRunning: boolean): void {
     const go = this.part<HTMLButtonElement>(".go"), cancel = this.part<HTMLButtonElement>(".cancel");
     const [from, to] = isRunning ? [go, cancel] : [cancel, go], hasFocus = document.activeElement === from;
-    to.hidden = to.disabled = false;
+    const progress = this.part(".progress");
+    progress.hidden = go.disabled = false;
     if (hasFocus) to.focus();  // a button that goes would take it along
     go.disabled = isRunning;
-    cancel.hidden = !isRunning;
+    progress.hidden = !isRunning;
     document.body.dataset.running = isRunning ? this.id : "";
   }
 
@@ -186,5 +185,7 @@ export function tooLarge(what: string, bytes: number, program: string): string {
 }
 
 export function number(id: string): string { return byId<HTMLInputElement>(id).value.trim(); }
+/** "100000" of "100,000" */
+export function count(id: string): string { return number(id).replaceAll(",", ""); }
 export function isChecked(id: string): boolean { return byId<HTMLInputElement>(id).checked; }
 export { formatCount };

@@ -6,6 +6,7 @@ import type { Niivue } from "@niivue/niivue";
 import { swatch } from "./dom";
 import { type Color, type Outline, type Painted, Painter, type Surface } from "./painter";
 import type { Shape } from "./protocol";
+import { boundsOf } from "./shape";
 
 interface Drawn extends Painted { cuts: { at: number; outline: Outline }[] }
 interface Plane { normal: number[]; at: number }
@@ -61,7 +62,7 @@ export class View {
     }
     const nv = new library.Niivue({ logLevel: "error", dragAndDropEnabled: false, isSliceMM: true, meshThicknessOn2D: 0,
       multiplanarShowRender: library.SHOW_RENDER.ALWAYS, multiplanarLayout: library.MULTIPLANAR_TYPE.GRID,
-      multiplanarPadPixels: 4, isOrientCube: false, show3Dcrosshair: true, crosshairWidth: 0.35,
+      multiplanarPadPixels: 4, isOrientCube: false, isCornerOrientationText: true, show3Dcrosshair: true, crosshairWidth: 0.35,
       crosshairWidthUnit: "percent", crosshairColor: [1, 0.28, 0.28, 0.8], crosshairGap: 3, backColor: [0, 0, 0, 1],
       fontColor: [0.75, 0.78, 0.82, 1], dragMode: library.DRAG_MODE.pan });
     const isSoftware = /swiftshader|llvmpipe|software/i.test(String(probe.getParameter(
@@ -149,15 +150,7 @@ export class View {
 
   /** A black image around meshes that have none. */
   private async showBlank(surfaces: Surface[]): Promise<void> {
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    for (const { shape } of surfaces) {
-      for (let n = 0; n < shape.points.length; ++n) {
-        const value = shape.points[n];
-        if (!Number.isFinite(value)) continue;
-        low[n % 3] = Math.min(low[n % 3], value);
-        high[n % 3] = Math.max(high[n % 3], value);
-      }
-    }
+    const { low, high } = boundsOf(surfaces.map(({ shape }) => shape));
     if (!low.every(Number.isFinite)) return;
     const kSize = 24, { nifti } = await import("./nifti");
     const steps = low.map((value, axis) => Math.max(1e-3, (high[axis] - value) * 1.2 / (kSize - 1)));

@@ -5,6 +5,7 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { gunzipSync, gzipSync } from "node:zlib";
+import { build } from "esbuild";
 import validator from "gltf-validator";
 import { arrived, balls, choicesOf, dicomSlice, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved,
   textOf, writeNifti } from "./support.mjs";
@@ -43,6 +44,33 @@ describe("the file", () => {
   });
 });
 
+describe("a mesh", async () => {
+  const { outputFiles: [{ text }] } = await build({ entryPoints: [new URL("../src/shape.ts", import.meta.url).pathname], bundle: true, write: false, format: "esm" });
+  const { countPieces, insideOf } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
+  /** Boxes from [x, half a side], turned inside out where that is negative. */
+  const boxes = (...places) => {
+    const points = [], triangles = [], normals = [];
+    for (const [x, half] of places) {
+      const sides = [0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5].map((n) => n + points.length / 3);
+      triangles.push(...sides);
+      for (let n = 0; n < 8; ++n) {
+        const corner = [n & 1, n >> 1 & 1, n >> 2].map((side) => 2 * side - 1);
+        points.push(...corner.map((side, axis) => (axis === 0 ? x : 0) + side * Math.abs(half)));
+        normals.push(...corner.map((side) => side * half));
+      }
+    }
+    return { points: Float32Array.from(points), triangles: Uint32Array.from(triangles), normals: Float32Array.from(normals) };
+  };
+  it("has pieces and cavities", () => {
+    assert.deepEqual(countPieces(boxes([0, 4], [0, -2], [0, 1], [9, 2])), { pieces: 3, cavities: 1 });
+  });
+  it("has an inside, also beneath its corners, edges and diagonals", () => {
+    const isInside = insideOf(boxes([0, 4], [0, 2], [9, 2]));  // the inner one is a hole by its count
+    for (const [x, y, z, inside] of [[3, 3, 3, true], [0, 0, 0, false], [2, 2, -3, true], [0, 0, 3, true], [4.5, 0, 0, false], [9, 1, -1, true],
+      [9, 0, 2.5, false], [-4, -4, -5, false], [50, 0, 0, false]]) assert.equal(isInside(x, y, z), inside, `${x}, ${y}, ${z}`);
+  });
+});
+
 for (const browserName of kBrowsers) {
   // minutes of the same module: with ADAPTISO_WEB_QUICK in one browser
   const itOnce = process.env.ADAPTISO_WEB_QUICK && browserName !== "chrome" ? it.skip : it;
@@ -61,10 +89,18 @@ for (const browserName of kBrowsers) {
     });
 
     it("shows a result of the example by one click", async () => {
+      await page.evaluate(() => {
+        const caption = document.querySelector("#caption");
+        globalThis.captions = [];
+        new MutationObserver(() => globalThis.captions.push(caption.textContent)).observe(caption, { childList: true });
+      });
       await press(page, "#example");
       assert.equal(await ended(page, "mesh"), "");
-      assert.match(await textOf(page, "#mesh .verdict"), /^[\d,]+ triangles; no point farther than 0\.(3|29\d) mm from the isosurface at \d+(\.\d+)? of the scan \(proved\); closed; 0 pairs cross; \d+ pieces?, \d+ cavit(y|ies)$/);
+      assert.match(await textOf(page, "#mesh .verdict"), /^[\d,]+ triangles; no point farther than 0\.(3|29\d) mm from the isosurface at [\d.]{1,5} of the scan \(proved\); closed; no triangles cross; 1 piece$/);
+      assert.match(await textOf(page, "#largest-drops"), /^drops \d+ smaller$/);
+      assert.match(await textOf(page, "#fill-drops"), /^drops \d+$/);
       await page.waitForFunction(() => document.body.dataset.shown === "example.stl", { timeout: 60_000 });
+      assert.deepEqual(await page.evaluate(() => globalThis.captions.slice(-2)), ["drawing ...", "example.stl "]);
       await picture(page, `${browserName}-example`);
     });
 
@@ -153,18 +189,19 @@ for (const browserName of kBrowsers) {
       await page.waitForFunction(() => document.body.dataset.scan === "balls.nii");
       await page.select("#format", ".ply");
       await page.select("#frame", "lps");
-      for (const id of ["#by-count", "#largest", "#fill"]) await press(page, id);
-      await page.$eval("#triangles", (input) => { input.value = "3000"; });
+      for (const id of ["#by-count", "#largest"]) await press(page, id);
+      assert.deepEqual(await page.$$eval("#max-error, #triangles", (inputs) => inputs.map(({ disabled }) => disabled)), [true, false]);
+      await page.$eval("#triangles", (input) => { input.value = "3,000"; });
       await page.$eval("#smooth", (input) => { input.value = "0.8"; });
       await press(page, "#mesh .go");
       assert.equal(await ended(page, "mesh"), "");
       const bytes = await saved(page, open.downloads, "#mesh .saves .main", "balls.ply");
       const command = (await textOf(page, "#mesh .copy:nth-of-type(2) code")).split(" ");
-      assert.ok(command.includes("--triangles") && command.includes("--smooth") && command.includes("--largest"));
+      assert.deepEqual(command.filter((word) => word.startsWith("--")), ["--iso", "--smooth", "--triangles", "--fill-cavities", "--coordinates", "--json"]);
       assert.equal(native(folder, ...command).status, 0);
       assert.deepEqual(bytes, readFileSync(join(folder, "balls.ply")));
       assert.match(await textOf(page, "#mesh .verdict"), /mm from the isosurface at [\d.]+ of the scan smoothed by 0\.8 mm \(proved\)/);
-      for (const id of ["#by-distance", "#largest", "#fill"]) await press(page, id);
+      for (const id of ["#by-distance", "#largest"]) await press(page, id);
       await page.$eval("#smooth", (input) => { input.value = ""; });
     });
 
@@ -387,7 +424,7 @@ for (const browserName of kBrowsers) {
       await page.$eval("#head .result", (box) => { box.hidden = true; });  // the last one's stays until the scan is open
       await press(page, "#head-example");
       assert.equal(await ended(page, "head", 600_000), "");
-      assert.match(await textOf(page, "#head .verdict"), /^3 surfaces of ([\d,]+), \1, \1 vertices, closed, each inside the next; 0 pairs cross$/);
+      assert.match(await textOf(page, "#head .verdict"), /^3 surfaces of ([\d,]+), \1, \1 vertices, closed, each inside the next; no triangles cross$/);
       assert.deepEqual(await page.$$eval("#head .notes li", (notes) => notes.map(({ textContent }) => textContent).filter((note) => /cut/.test(note))), []);
       await page.waitForFunction(() => document.body.dataset.shown === "model", { timeout: 60_000 });
       await picture(page, `${browserName}-head-example`);
@@ -479,7 +516,7 @@ for (const browserName of kBrowsers) {
       const colored = await saved(page, open.downloads, "#compare .saves .main", "distance.vtp");
       assert.equal(native(folder, ...(await textOf(page, "#compare .copy:nth-of-type(2) code")).split(" ")).status, 0);
       assert.deepEqual(colored, readFileSync(join(folder, "distance.vtp")));
-      assert.match(await textOf(page, "#compare .hint:has(.scale)"), /^0 mm\d+(\.\d+)? mm$/);
+      assert.match(await textOf(page, "#compare .hint:has(.scale)"), /^[\d.]+ mm inside[\d.]+ mm outside balls-simple\.stl$/);
       await picture(page, `${browserName}-compare`);
     });
 
@@ -507,6 +544,12 @@ for (const browserName of kBrowsers) {
           assert.deepEqual(found, [], `${tab} at ${width}`);
           const wider = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
           assert.ok(wider <= 0, `${tab} at ${width} is ${wider} px too wide`);
+          // whatever the letters: one left edge of all fields, one of all question marks
+          for (const column of [".field input:not([type=radio], [type=checkbox]), .field select", ".field .why"]) {
+            const edges = await page.$$eval(`#${tab} :is(${column})`, (items) => items.filter((item) => item.checkVisibility())
+              .map((item) => Math.round(item.getBoundingClientRect().left)));
+            assert.ok(new Set(edges).size <= 1, `${tab} at ${width}: ${column} at ${edges}`);
+          }
         }
         await press(page, "#tab-mesh");
         await picture(page, `${browserName}-${width}-${scheme}`);
@@ -546,6 +589,12 @@ for (const browserName of kBrowsers) {
       assert.ok(await page.$eval("#by-count", (input) => input.checked));
       await tabTo("#triangles");
       await keyboard.type("4000");
+      await keyboard.press("Tab");
+      assert.ok(await isFocused("details.why summary"));
+      await keyboard.press("Enter");
+      await page.waitForSelector("details.why[open]");
+      await keyboard.press("Escape");
+      assert.equal(await page.$("details.why[open]"), null);
       await tabTo("#largest");
       await keyboard.press(" ");
       await tabTo("#format");
