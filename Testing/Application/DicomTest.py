@@ -208,6 +208,10 @@ class DicomImages(ApplicationTest):
         self.path("in/a.json").write_text("{}")
         self.assert_fails(BAD_INPUT, r"no DICOM file found in this folder: it holds 3 NIfTI files; give one of them, or "
                                      r"all for a batch: in/\*\.nii\.gz", "in", "--iso", "50")
+        self.path("study").mkdir()
+        self.path("in").rename(self.path("study/sub-1"))
+        self.assert_fails(BAD_INPUT, r"all for a batch: --list takes what find study -name '\*\.nii\.gz' prints",
+                          "study", "--iso", "50")
 
     def test_frames_left_out_of_a_segmentation_are_empty(self):
         boxes = {1: (2, 4, 6, 16, 18), 2: (8, 10, 12)}

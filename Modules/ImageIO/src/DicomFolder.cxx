@@ -240,6 +240,9 @@ private:
             return lowerCase((file.extension() == ".gz" ? file.stem().extension().string() : "") +
                              file.extension().string());
         };
+        const auto isBelow = [&](const fs::path& file) {
+            return file.lexically_relative(folder_).has_parent_path();
+        };
         for (const fs::path& first : others_) {
             const std::string_view format = recognizeImage(first);
             if (format.empty() || isHidden(first)) continue;
@@ -247,9 +250,13 @@ private:
             refuse(folder_,
                    fmt::format("no DICOM file found in this folder: it holds {} {} file{}", count,
                                format, count == 1 ? "" : "s"),
-                   count == 1 ? "give the file"
-                              : fmt::format("give one of them, or all for a batch: {}",
-                                            (folder_ / ("*" + ending(first))).string()));
+                   count == 1
+                       ? "give the file"
+                       : "give one of them, or all for a batch: " +
+                             (isBelow(first)
+                                  ? fmt::format("--list takes what find {} -name '*{}' prints",
+                                                folder_.string(), ending(first))
+                                  : (folder_ / ("*" + ending(first))).string()));
         }
     }
 
