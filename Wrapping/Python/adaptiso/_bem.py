@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import logging
 import math
 import os
 import pathlib
@@ -20,7 +19,7 @@ from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, Warned, count, flag, is_path, listed, number,
                          path as checked_path, progress as checked_progress, shown,
-                         threads as checked_threads, word)
+                         threads as checked_threads, warn, word)
 from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import Mesh, load, require_known_frames, stated_frames
 from ._options import checked, takes
@@ -30,8 +29,6 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._option_types import BemOptions
-
-logger = logging.getLogger("adaptiso")
 
 PRESETS = tuple(_adaptiso.tissue_presets())
 TISSUES = ("brain", "csf", "skull", "scalp")
@@ -262,7 +259,8 @@ class HeadModel:
             return f"<adaptiso.HeadModel: none: {self._data.failure}>"
         sizes = ", ".join(f"{name} of {len(mesh.vertices):,} vertices"
                          for name, mesh in self.surfaces.items())
-        return f"<adaptiso.HeadModel: {sizes}>"
+        guessed = any(warning.code == "guessed-brain" for warning in self._data.warnings)
+        return f"<adaptiso.HeadModel: {sizes}{'; the brain was guessed' if guessed else ''}>"
 
 
 class _Source(NamedTuple):
@@ -451,8 +449,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         data = _adaptiso.make_bem({**source.as_dict(), **named}, options, given_threads, callback)
     if mesher and data.has_model:
         _fill(data, mesher, element_mm)
-    for warning in data.warnings[len(source.warnings):]:
-        logger.warning("bem: %s", warning)
+    warn(data.warnings[len(source.warnings):], "bem")
     model = HeadModel(data, given_threads)
     if not data.has_model:
         raise NoModel(f"no model: {data.failure}", model)

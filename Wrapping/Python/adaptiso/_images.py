@@ -4,7 +4,6 @@ an affine, uncopied where they can be."""
 from __future__ import annotations
 
 import contextlib
-import logging
 import os
 import re
 import sys
@@ -18,15 +17,13 @@ import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import Warned, is_path, path, shown
+from ._arguments import Warned, is_path, path, shown, warn
 from ._options import checked, rows, takes
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._option_types import ReadOptions
-
-logger = logging.getLogger("adaptiso")
 
 Array = npt.NDArray[Any]
 Affine = npt.NDArray[np.float64]
@@ -126,8 +123,7 @@ def _read(file: Any, options: Mapping[str, Any] = {}) -> Tuple[Image, str]:
             array, affine, kind, warnings, scaling = _adaptiso.read_image(name, given)
     except Error as error:
         raise Error(_in_python(str(error))) from None
-    for warning in warnings:
-        logger.warning("%s", warning.of(base_name(name)))
+    warn(warnings, file=base_name(name))
     return Image(array, affine, warnings, kind), scaling
 
 
@@ -341,7 +337,7 @@ def prepared(array: Array, affine: Any, file: str, kind: str, warnings: List[War
         bad = volume.count_not_finite()
         if bad:
             told.append(Warned(f"{bad} voxels are NaN or infinite; NaN counts as outside", "not-finite"))
-            logger.warning("image: %s", told[-1])
+            warn(told[-1:], "image")
     return Samples(array, volume, matrix, file, kind, told)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import json
-import logging
 from typing import (TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple,
                     Union)
 
@@ -14,7 +13,7 @@ import numpy.typing as npt
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, count, is_path, listed, path as checked_path,
-                         progress as checked_progress, shown, threads as checked_threads)
+                         progress as checked_progress, shown, threads as checked_threads, warn)
 from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import IN_VOXELS, Mesh, is_identity
 from ._options import checked, takes
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._option_types import LabelsOptions
-
-logger = logging.getLogger("adaptiso")
 
 LabelArray = npt.NDArray[np.int32]
 #: Larger labels coincide in single precision; 0 is the outside.
@@ -335,8 +332,7 @@ def _names(names: Any, image: Any) -> _Names:
         entries, warnings = _adaptiso.find_label_table(file)
     else:
         return _Names({})
-    for warning in warnings:
-        logger.warning("%s", warning.of(base_name(file)))
+    warn(warnings, file=base_name(file))
     return _Names({value: (name, None if color is None else (color[0], color[1], color[2]))
                    for value, name, _, color in entries})
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, number, progress as checked_progress,
-                         threads as checked_threads)
+                         threads as checked_threads, warn)
 from ._mesh import Mesh, mesh_data_of, stated_frames
 from ._options import checked, takes
 from ._quality import names_of, require_one_frame
@@ -90,4 +90,5 @@ def mend(mesh: Any, faces: Any = None, *, around: Any = None, gap: Optional[floa
     made, found = _adaptiso.mend_mesh(
         data[0], checked("mend", options), None if around is None else data[1], distance,
         checked_threads(threads), checked_progress(progress))
+    warn(found["warnings"], "mend")
     return Mesh._of(made, found)

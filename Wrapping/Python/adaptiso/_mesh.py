@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import logging
 import os
 import sys
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
@@ -14,7 +13,7 @@ import numpy.typing as npt
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, is_path, path as checked_path, progress as checked_progress, shown,
-                         threads as checked_threads, word)
+                         threads as checked_threads, warn, word)
 from ._images import affine_of, base_name, read
 from ._options import checked, takes
 from ._triangles import Faces, Triangles, Vertices
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._option_types import SimplifyOptions
-
-logger = logging.getLogger("adaptiso")
 
 
 #: The frame of what was made of an array without an affine, in words.
@@ -87,7 +84,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         mesh = cls.__new__(cls)
         mesh._data = data
         mesh._normals = None
-        mesh._report = None
+        mesh._report = report
         if report is not None:
             data.report = json.dumps(report)
         return mesh
@@ -160,6 +157,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
             raise Error("simplify: one of max_error, triangles and reduction must be given")
         made, found = _adaptiso.simplify_mesh(self._data, checked("simplify", options),
                                               checked_threads(threads), checked_progress(progress))
+        warn(found["warnings"], "simplify")
         return Mesh._of(made, found)
 
     def transform(self, matrix: Any) -> "Mesh":
@@ -382,8 +380,7 @@ def load(path: Any, *, volume: Any = None, input_coordinates: Optional[str] = No
     name = checked_path("path", path)
     shape, affine = (None, None) if volume is None else _geometry_of(volume)
     data, warnings = _adaptiso.read_mesh(name, shape, affine, False, _stated(input_coordinates))
-    for warning in warnings:
-        logger.warning("%s", warning.of(base_name(name)))
+    warn(warnings, file=base_name(name))
     return Mesh._of(data)
 
 
@@ -424,8 +421,7 @@ def mesh_data_of(value: Any, keeps_faults: bool,
             return load(value, input_coordinates=input_coordinates)._data
         name = checked_path("mesh", value)
         data, warnings = _adaptiso.read_mesh(name, None, None, True, input_coordinates)
-        for warning in warnings:
-            logger.warning("%s", warning.of(base_name(name)))
+        warn(warnings, file=base_name(name))
         return data
     if isinstance(value, (tuple, list)) and len(value) == 2:
         vertices, faces = value

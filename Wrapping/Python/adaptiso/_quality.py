@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, 
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, flag, is_path, listed, path as checked_path,
-                         progress as checked_progress, shown, threads as checked_threads, word)
+from ._arguments import (Progress, Warned, count, flag, is_path, listed, path as checked_path,
+                         progress as checked_progress, shown, threads as checked_threads, warn, word)
 from ._images import base_name
-from ._mesh import Mesh, logger, mesh_data_of, require_known_frames, stated_frames
+from ._mesh import Mesh, mesh_data_of, require_known_frames, stated_frames
 from ._options import checked, takes
 
 if TYPE_CHECKING:
@@ -275,8 +275,7 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True,
                              flag("symmetric", symmetric), checked_threads(threads),
                              checked_progress(progress))
     comparison = Comparison(json.loads(text))
-    for warning in comparison.report["warnings"]:
-        logger.warning("compare: %s", warning["text"])
+    warn((Warned(each["text"]) for each in comparison.report["warnings"]), "compare")
     return comparison
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 from typing import Generic, Optional, TypeVar, Union
 
@@ -10,14 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _adaptiso
-from ._arguments import word
+from ._arguments import Warned, warn, word
 
 Vertices = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
 
 FRAMES = ("ras", "lps", "tkras", "voxel")
-
-logger = logging.getLogger("adaptiso")
 
 Data = TypeVar("Data", bound=Union[_adaptiso.MeshData, _adaptiso.LabelData])
 
@@ -59,4 +56,4 @@ class Triangles(Generic[Data]):
             word("frame", frame, FRAMES)
         warning = self._data.write(name, frame)
         if warning:
-            logger.warning("%s: %s", os.path.basename(name), warning)
+            warn([Warned(warning)], file=os.path.basename(name))
