@@ -401,6 +401,8 @@ class BadInput(unittest.TestCase):
         for call, answer in (
                 (lambda: adaptiso.surface(ball(), -8, maxerror=1), r"'maxerror'; did you mean max_error=\?$"),
                 (lambda: adaptiso.surface(ball(), isovalue=-8), r"did you mean level=\?$"),
+                (lambda: adaptiso.surface(ball(), iso=-8), r"did you mean level=\?$"),
+                (lambda: adaptiso.read("a.zarr", refuse_missing_chunks=True), r"did you mean all_chunks=\?$"),
                 (lambda: adaptiso.surface(ball(), threshold=-8), r"did you mean level=\?$"),
                 (lambda: adaptiso.surface(ball(), -8, decimate=0.9), r"did you mean reduction=\?$"),
                 (lambda: adaptiso.surface(ball(), -8, sigma=1), r"did you mean smooth=\?$"),

@@ -134,7 +134,7 @@ class Comparison(_Report):
 
     def __repr__(self) -> str:
         return (f"<adaptiso.Comparison: mean {self.mean:.4g} mm, 95 % {self.p95:.4g} mm, "
-                f"max {self.hausdorff[1]:.4g} mm>")
+                f"max {self.max:.4g} mm, proved at most {self.hausdorff[1]:.4g} mm>")
 
 
 @takes("check")
