@@ -2,6 +2,7 @@
 
 import copy
 import gc
+import importlib.util
 import os
 import pickle
 import re
@@ -64,6 +65,22 @@ class Values(unittest.TestCase):
             self.assertNotEqual(value, unlike)
             self.assertNotEqual(value, None)
         self.assertEqual(repr(image), "<adaptiso.Image of 2 x 3 x 4 voxels, float64, array>")
+
+    def test_checks_take_vertices_and_faces_and_vtk_data(self):
+        mesh = sphere()
+        expected = adaptiso.check(mesh, "bem")
+        for given in ((mesh.vertices, mesh.faces, "bem"), ((mesh.vertices, mesh.faces), "bem")):
+            self.assertEqual(adaptiso.check(*given).failed, expected.failed)
+        self.assertEqual(adaptiso.check(mesh.vertices, mesh.faces[1:]).failed, ["closed"])
+        for call in (adaptiso.check, adaptiso.mend, adaptiso.simplify):
+            with self.assertRaisesRegex(adaptiso.Error, "^faces 0.2: must be a table of integers"):
+                call(mesh, 0.2)
+        if importlib.util.find_spec("vtkmodules"):
+            data = mesh.to_vtk()
+            self.assertEqual(adaptiso.check(data, "bem").failed, expected.failed)
+            np.testing.assert_array_equal(adaptiso.mend(data).faces, mesh.faces)
+            with self.assertRaisesRegex(adaptiso.Error, "^mesh: has no triangles$"):
+                adaptiso.check(type(data)())
 
     def test_a_comparison_encloses_the_hausdorff_distance(self):
         mesh = sphere()

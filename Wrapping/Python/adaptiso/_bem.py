@@ -21,7 +21,7 @@ from ._arguments import (Progress, Warned, count, flag, is_path, listed, number,
                          path as checked_path, progress as checked_progress, shown,
                          threads as checked_threads, warn, word)
 from ._images import Samples, base_name, read_only, samples_of
-from ._mesh import Mesh, load, require_known_frames, stated_frames
+from ._mesh import Mesh, mesh_data_of, require_known_frames, stated_frames
 from ._options import checked, takes
 from ._quality import Check
 
@@ -516,21 +516,9 @@ def _surfaces(name: str, framed: List[Tuple[Any, Optional[str]]], source: _Sourc
     role = {"surfaces": "surface", "pial": "pial surface", "sources": "source surface"}[name]
     meshes = []
     for surface, stated in framed:
-        if stated is not None and not is_path(surface):
-            raise Error("input_coordinates: is for files; a mesh in memory has its frame")
         file = base_name(checked_path(name, surface)) if is_path(surface) else ""
         source.inputs.append([file, role, "file" if file else type(surface).__name__])
-        if isinstance(surface, Mesh):
-            meshes.append(surface)
-        elif file:
-            meshes.append(load(surface, input_coordinates=stated))
-        elif isinstance(surface, (tuple, list)) and len(surface) == 2:
-            meshes.append(Mesh(*surface))
-        elif hasattr(surface, "vertices") and hasattr(surface, "faces"):
-            meshes.append(Mesh(surface.vertices, surface.faces))
-        else:
-            raise Error(f"{name} {shown(surface)}: must be a Mesh, (vertices, faces), or a file's "
-                        "name")
+        meshes.append(Mesh._of(mesh_data_of(surface, False, stated, name)))
     require_known_frames([mesh.frame for mesh in meshes],
                          [f"{name}: number {n + 1}" for n in range(len(meshes))])
     if source.images and any(mesh.frame == "unknown" for mesh in meshes):

@@ -122,13 +122,17 @@ def _read(file: Any, options: Mapping[str, Any] = {}) -> Tuple[Image, str]:
         with _reading:
             array, affine, kind, warnings, scaling = _adaptiso.read_image(name, given)
     except Error as error:
-        raise Error(_in_python(str(error))) from None
+        raise Error(_in_python(str(error), name)) from None
     warn(warnings, file=base_name(name))
     return Image(array, affine, warnings, kind), scaling
 
 
-def _in_python(message: str) -> str:
-    """A reader's message, which names options as the programs have them."""
+def _in_python(message: str, name: str) -> str:
+    """A reader's message, which names options as the programs have them, and functions."""
+    if "not a format that is read here" in message:
+        with contextlib.suppress(Error):
+            _adaptiso.read_mesh(name, None, None, True, None)
+            return re.sub(": [^:]*not a format that is read here.*", ": is a surface; adaptiso.load reads it", message)
     message = message.replace("--level, --channel, --time, --refuse-missing-chunks",
                               "level, channel, time, all_chunks")
     message = message.replace("; adaptiso-mesh --list-series prints what is known of each", "")

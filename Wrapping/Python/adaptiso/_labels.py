@@ -133,25 +133,36 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         meet at edges where regions do."""
         return Mesh._of(self._data.walls())
 
-    def region(self, label: int) -> Mesh:
+    def region(self, label: Union[int, str]) -> Mesh:
         """The surface of one region: closed, outward; its vertices are those of `vertices`, to the
         bit, in their order.
 
         Parameters
         ----------
-        label : int
+        label : int or str
+            Number or name.
 
         Raises
         ------
         Error
-            There is no such region.
+            There is no such region, or several have the name.
         """
+        if isinstance(label, str):
+            names = _Names({region.label: (region.name, None) for region in self.regions.values()})
+            found = names.labels_of(label, "label")
+            if len(found) > 1:
+                raise Error(f"label {shown(label)}: is the name of {', '.join(map(str, found))}; give a number")
+            label = found[0]
         number = count("label", label, -_MOST, _MOST)
         if number not in self.regions:
             raise Error(f"label {number}: is no region here")
         mesh = self._data.region(number)
         mesh.error_bound = self.error_bound
         return Mesh._of(mesh)
+
+    def plot(self, file: Any = None, **options: Any) -> None:
+        """Show or draw all walls, in one colour, as `Mesh.plot` does a mesh."""
+        self.walls.plot(file, **options)
 
     def save(self, path: Any, frame: Optional[str] = None) -> None:
         """Write the walls as a .vtp with the arrays label0 and label1 of its cells: walls.vtp of
@@ -172,7 +183,8 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         """
         name = checked_path("path", path)
         if not name.lower().endswith(".vtp"):
-            raise Error(f"{name}: walls are saved as .vtp; region(label).save(path) takes others")
+            raise Error(f"{name}: walls are saved as .vtp; region(label).save(path) takes others; "
+                        "the program adaptiso-labels writes all regions into a .glb or .3mf")
         self._save(name, frame)
 
     def __len__(self) -> int:
@@ -214,7 +226,7 @@ class _Names:
         return [(name or f"region {label}", (red, green, blue))
                 for label, (name, _), (red, green, blue) in zip(labels, entries, colors)]
 
-    def labels_of(self, name: str) -> List[int]:
+    def labels_of(self, name: str, argument: str = "labels") -> List[int]:
         """\\raises Error"""
         known = {label: entry[0] for label, entry in self.table.items() if label != 0}
         found = ([label for label, other in known.items() if other == name]
@@ -223,7 +235,7 @@ class _Names:
             return found
         near = [other for other in known.values() if name.lower() in other.lower()][:5]
         near = near or difflib.get_close_matches(name, known.values())
-        raise Error(f"labels {shown(name)}: no label has this name; "
+        raise Error(f"{argument} {shown(name)}: no label has this name; "
                     + (f"did you mean {', '.join(near)}?" if near
                        else "names= takes a table of names" if not known else "see regions"))
 

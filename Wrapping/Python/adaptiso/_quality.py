@@ -10,7 +10,7 @@ from ._adaptiso import Error
 from ._arguments import (Progress, Warned, count, flag, is_path, listed, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads, warn, word)
 from ._images import base_name
-from ._mesh import Mesh, mesh_data_of, require_known_frames, stated_frames
+from ._mesh import mesh_data_of, require_known_frames, stated_frames, whole
 from ._options import checked, takes
 
 if TYPE_CHECKING:
@@ -138,15 +138,17 @@ class Comparison(_Report):
 
 
 @takes("check")
-def check(mesh: Any, profile: str = "print", *, input_coordinates: Optional[str] = None,
+def check(mesh: Any, faces: Any = None, profile: str = "print", *, input_coordinates: Optional[str] = None,
           threads: int = 0, **options: Unpack[CheckOptions]) -> Check:
     """Check whether a surface is sound: closed, manifold, oriented, without crossing triangles, of
     a plausible size.
 
     Parameters
     ----------
-    mesh : Mesh, (vertices, faces), path, or an object with vertices and faces
+    mesh : Mesh, (vertices, faces), path, vtkPolyData, object with vertices and faces, or vertices
         mm, in any frame; may be broken in any way.
+    faces : array_like of integers of shape (m, 3), optional
+        Where `mesh` holds vertices alone; else the profile may stand here.
     profile : {"bem", "print", "view"}
         Use of the surface, which determines the required checks.
     **options
@@ -169,7 +171,10 @@ def check(mesh: Any, profile: str = "print", *, input_coordinates: Optional[str]
     >>> adaptiso.check((points, faces[:3])).failed
     ['closed']
     """
-    text = _adaptiso.check(mesh_data_of(mesh, True, *stated_frames(input_coordinates, [mesh])),
+    if isinstance(faces, str):
+        faces, profile = None, faces
+    mesh = whole(mesh, faces)
+    text = _adaptiso.check(mesh_data_of(mesh, True, stated_frames(input_coordinates, [mesh])[0]),
                            word("profile", profile, PROFILES), checked("check", options),
                            checked_threads(threads))
     return Check(json.loads(text))
