@@ -149,8 +149,9 @@ class Zarr(InFolder):
 
     def test_missing_chunks_are_told_or_refused(self):
         (self.root / "0" / "0.0.0.0.0").unlink()
-        with self.assertLogs("adaptiso", "WARNING"):
+        with self.assertLogs("adaptiso", "WARNING") as logs:
             image = adaptiso.read(self.root, channel=0, time=0)
+        self.assertIn("(image_space= chooses)", logs.output[0] + logs.output[-1])
         self.assertTrue((image.array == 7).all())
         with self.assertRaises(adaptiso.Error):
             adaptiso.read(self.root, channel=0, time=0, all_chunks=True)

@@ -6,6 +6,7 @@ import logging
 import math
 import operator
 import os
+import re
 from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, TypeVar
 
 import numpy as np
@@ -49,9 +50,11 @@ class Warned(str):
 
 
 def warn(warnings: Iterable[Warned], call: str = "", file: str = "") -> None:
-    """Hands warnings to the logger "adaptiso"; without a handler Python prints them to stderr."""
+    """Hands warnings to the logger "adaptiso"; without a handler Python prints them to stderr.
+    Options are named as arguments."""
     for warning in warnings:
-        logging.getLogger("adaptiso").warning("%s%s", f"{call}: " if call else "", warning.of(file))
+        text = re.sub(r"--([a-z][a-z-]+)", lambda option: option[1].replace("-", "_") + "=", warning.text)
+        logging.getLogger("adaptiso").warning("%s%s", f"{call}: " if call else "", Warned(text, file=warning.file or file))
 
 
 def shown(value: Any) -> str:
