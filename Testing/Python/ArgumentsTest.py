@@ -2,6 +2,7 @@
 ADAPTISO_EXAMPLES (200). Exit code 77: hypothesis is not there."""
 
 import importlib.util
+import logging
 import os
 import sys
 import tempfile
@@ -19,6 +20,8 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+
+logging.getLogger("adaptiso").setLevel(logging.ERROR)
 
 SETTINGS = settings(max_examples=int(os.environ.get("ADAPTISO_EXAMPLES", "200")), deadline=None,
                     database=None, derandomize="ADAPTISO_EXAMPLES" not in os.environ,

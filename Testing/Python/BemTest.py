@@ -11,6 +11,7 @@ import unittest.mock
 
 import adaptiso
 import numpy as np
+from adaptiso._arguments import Warned
 from support import InFolder, needs, program
 
 NAMES = ("inner_skull", "outer_skull", "outer_skin")
@@ -93,6 +94,9 @@ class Truth(unittest.TestCase):
     def test_repr_tells_the_surfaces(self):
         self.assertEqual(repr(self.model), "<adaptiso.HeadModel: " + ", ".join(
             f"{name} of 162 vertices" for name in NAMES) + ">")
+        rebuilt, (state, threads) = self.model.__reduce__()
+        guessed = {**state, "warnings": [Warned("", "guessed-brain")]}
+        self.assertRegex(repr(rebuilt(guessed, threads)), "162 vertices; the brain was guessed>$")
 
     def test_orders_of_samples_make_no_difference(self):
         for labels in (np.ascontiguousarray(spheres()), spheres().astype(np.int32)):

@@ -152,7 +152,7 @@ class Pages(InFolder):
         self.write_zarr()
         # MNE's solution of 2,562 vertices takes minutes
         blocks = blocks_of("Documentation/Python.md", ("vertices=2562", "vertices=162"))
-        self.assertEqual(len(blocks), 8)
+        self.assertEqual(len(blocks), 7)
         path = f"{BIN}{os.pathsep}{os.environ.get('PATH', '')}"
         with mock.patch.dict(os.environ, {"PATH": path}), contextlib.redirect_stderr(io.StringIO()):
             made = self.run_blocks(blocks)

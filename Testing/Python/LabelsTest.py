@@ -136,6 +136,17 @@ class Truth(unittest.TestCase):
             adaptiso.labels(self.volume, progress=stop)
         self.assertTrue(self.volume.flags.writeable)
 
+    def test_regions_are_taken_by_name(self):
+        walls = adaptiso.labels(boxes(), names={1: "left", 2: "right", 7: "Right"})
+        self.assertEqual(walls.region("left"), walls.region(1))
+        self.assertEqual(walls.region("LEFT"), walls.region(1))
+        self.assertEqual(walls.region("Right"), walls.region(7))
+        self.assertEqual(adaptiso.labels(boxes()).region("region 7"), walls.region(7))
+        for name, answer in (("lef", "label 'lef': no label has this name; did you mean left"),
+                             ("RIGHT", "label 'RIGHT': is the name of 2, 7; give a number"), ("xyzzy", "see regions")):
+            with self.assertRaisesRegex(adaptiso.Error, answer):
+                walls.region(name)
+
 
 class Refused(InFolder):
     def test_with_one_line(self):

@@ -2,6 +2,7 @@
 
 import copy
 import gc
+import importlib.util
 import os
 import pickle
 import re
@@ -12,6 +13,7 @@ from unittest import mock
 
 import adaptiso
 import numpy as np
+from adaptiso._triangles import _MEANT
 from support import InFolder, ball, needs, place
 
 LIA = np.array([[-1, 0, 0, 13], [0, 0, 1, -9], [0, -1, 0, 15], [0, 0, 0, 1.0]])
@@ -64,6 +66,22 @@ class Values(unittest.TestCase):
             self.assertNotEqual(value, None)
         self.assertEqual(repr(image), "<adaptiso.Image of 2 x 3 x 4 voxels, float64, array>")
 
+    def test_checks_take_vertices_and_faces_and_vtk_data(self):
+        mesh = sphere()
+        expected = adaptiso.check(mesh, "bem")
+        for given in ((mesh.vertices, mesh.faces, "bem"), ((mesh.vertices, mesh.faces), "bem")):
+            self.assertEqual(adaptiso.check(*given).failed, expected.failed)
+        self.assertEqual(adaptiso.check(mesh.vertices, mesh.faces[1:]).failed, ["closed"])
+        for call in (adaptiso.check, adaptiso.mend, adaptiso.simplify):
+            with self.assertRaisesRegex(adaptiso.Error, "^faces 0.2: must be a table of integers"):
+                call(mesh, 0.2)
+        if importlib.util.find_spec("vtkmodules"):
+            data = mesh.to_vtk()
+            self.assertEqual(adaptiso.check(data, "bem").failed, expected.failed)
+            np.testing.assert_array_equal(adaptiso.mend(data).faces, mesh.faces)
+            with self.assertRaisesRegex(adaptiso.Error, "^mesh: has no triangles$"):
+                adaptiso.check(type(data)())
+
     def test_a_comparison_encloses_the_hausdorff_distance(self):
         mesh = sphere()
         moved = adaptiso.Mesh(mesh.vertices + (0.25, 0, 0), mesh.faces)
@@ -74,7 +92,7 @@ class Values(unittest.TestCase):
             self.assertLessEqual(lower, upper)
             self.assertLessEqual(upper, 0.25 * (1 + 2e-3))  # no point went farther than it was moved
             self.assertLessEqual(upper - lower, 1e-3 * upper)
-            self.assertIn(f"max {upper:.4g} mm", repr(comparison))
+            self.assertIn(f"max {comparison.max:.4g} mm, proved at most {upper:.4g} mm>", repr(comparison))
 
     def test_own_arrays_make_a_mesh_and_are_copied(self):
         points = np.array([[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]], np.float32)
@@ -116,6 +134,18 @@ class Values(unittest.TestCase):
         self.assertFalse(adaptiso.Mesh(mesh.vertices, flipped).is_watertight)
         self.assertEqual(mesh.simplify(max_error=0.3), adaptiso.simplify(mesh, max_error=0.3))
         self.assertEqual(mesh.simplify(max_error=0.3).report, adaptiso.simplify(mesh, max_error=0.3).report)
+
+    def test_names_of_trimesh_and_pyvista_are_answered_by_ours(self):
+        mesh, walls = sphere(), adaptiso.labels((ball((9, 9, 9)) > -3).astype(np.uint8))
+        for value, name, answer in ((mesh, "export", r"did you mean save\(path\)\?"), (walls, "export", "did you mean save"),
+                                    (mesh, "n_points", r"did you mean len\(mesh.vertices\)\?"),
+                                    (mesh, "xyzzy", "'Mesh' object has no attribute 'xyzzy'$"),
+                                    (walls, "decimate", "'decimate'$")):
+            with self.assertRaisesRegex(AttributeError, answer):
+                getattr(value, name)
+        for meant in _MEANT.values():
+            if "mesh" not in meant:
+                self.assertTrue(hasattr(mesh, meant.partition("(")[0]), meant)
 
     def test_an_array_without_affine_is_in_voxel_indices(self):
         for mesh, words in ((sphere(), "voxel indices"), (sphere(affine=LIA), "RAS mm"),

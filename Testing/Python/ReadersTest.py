@@ -8,7 +8,7 @@ import unittest
 import adaptiso
 import numpy as np
 from adaptiso import _adaptiso
-from support import BIN, BRAIN, InFolder, needs
+from support import BIN, BRAIN, InFolder, ball, needs
 
 AFFINE = np.array([[-1.5, 0.2, 0, 20], [0, 0.9, 1.1, -30], [0.1, -1, 1.2, 12], [0, 0, 0, 1]],
                   np.float32).astype(float)  # as NIfTI's sform holds it
@@ -149,8 +149,9 @@ class Zarr(InFolder):
 
     def test_missing_chunks_are_told_or_refused(self):
         (self.root / "0" / "0.0.0.0.0").unlink()
-        with self.assertLogs("adaptiso", "WARNING"):
+        with self.assertLogs("adaptiso", "WARNING") as logs:
             image = adaptiso.read(self.root, channel=0, time=0)
+        self.assertIn("(image_space= chooses)", logs.output[0] + logs.output[-1])
         self.assertTrue((image.array == 7).all())
         with self.assertRaises(adaptiso.Error):
             adaptiso.read(self.root, channel=0, time=0, all_chunks=True)
@@ -162,6 +163,18 @@ class Zarr(InFolder):
         for options in ({"level": 0}, {"channel": 0}, {"time": 0}, {"all_chunks": True}):
             with self.assertRaisesRegex(adaptiso.Error, "all_chunks.* Zarr"):
                 adaptiso.read(image, **options)
+
+    def test_surfaces_and_images_name_the_function_that_reads_them(self):
+        mesh = adaptiso.surface(ball((9, 9, 9)), -3)
+        for extension in ("stl", "ply", "3mf"):
+            file = self.folder / f"a.{extension}"
+            mesh.save(file)
+            with self.assertRaisesRegex(adaptiso.Error, f"a.{extension}: is a surface; adaptiso.load reads it$"):
+                adaptiso.read(file)
+        (self.folder / "a.nrrd").write_bytes(b"NRRD0004\n")
+        for call in (adaptiso.load, adaptiso.check, adaptiso.simplify):
+            with self.assertRaisesRegex(adaptiso.Error, "not a surface; adaptiso.surface makes surfaces"):
+                call(self.folder / "a.nrrd")
 
 
 if __name__ == "__main__":

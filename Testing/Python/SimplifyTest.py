@@ -32,6 +32,14 @@ class Simplify(unittest.TestCase):
         self.assertEqual(coarse.report["crossing_triangles"], [])
         self.assertEqual(len(coarse.normals), len(coarse.vertices))
 
+    def test_warnings_of_the_report_are_logged_once(self):
+        for change in (adaptiso.simplify, adaptiso.mend):
+            with self.assertLogs("adaptiso", "WARNING") as logs:
+                made = change(ball(12, 4), max_error=50)
+            (warning,) = made.report["warnings"]
+            self.assertEqual(warning.code, "bound-over-size")
+            self.assertEqual(logs.output, [f"WARNING:adaptiso:{change.__name__}: {warning}"])
+
     def test_a_count_is_met_and_told(self):
         coarse = adaptiso.simplify(ball(), triangles=500)
         self.assertEqual(len(coarse.faces), 500)

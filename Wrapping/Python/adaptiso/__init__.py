@@ -7,11 +7,11 @@
 
 Points are in scanner RAS millimetres. Unusable input raises `adaptiso.Error`, a ValueError
 whose message is one line. C++ works without the interpreter's lock, so threads run side by side;
-Ctrl+C ends a call. Nothing is printed: warnings go to the logger "adaptiso".
+Ctrl+C ends a call. Warnings go to the logger "adaptiso", which prints them to stderr unless logging
+is configured; ``logging.getLogger("adaptiso").setLevel("ERROR")`` hides them.
 """
 
 import atexit as _atexit
-import logging as _logging
 import os as _os
 from typing import TYPE_CHECKING
 
@@ -37,9 +37,6 @@ if not TYPE_CHECKING:
                  "decimate": "simplify", "repair": "mend", "load_mesh": "load"}.get(name)
         raise AttributeError(f"module 'adaptiso' has no attribute '{name}'"
                              + (f"; did you mean adaptiso.{meant}?" if meant else ""))
-
-# who wants to see the warnings says so by logging's own means
-_logging.getLogger("adaptiso").addHandler(_logging.NullHandler())
 
 if hasattr(_os, "register_at_fork"):
     _os.register_at_fork(before=_adaptiso.before_fork,

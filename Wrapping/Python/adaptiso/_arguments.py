@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import operator
 import os
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, TypeVar
+import re
+from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, TypeVar
 
 import numpy as np
 
@@ -45,6 +47,14 @@ class Warned(str):
     def of(self, file: str) -> Warned:
         """The warning, of `file` where it names none."""
         return self if self.file else Warned(self.text, self.code, file)
+
+
+def warn(warnings: Iterable[Warned], call: str = "", file: str = "") -> None:
+    """Hands warnings to the logger "adaptiso"; without a handler Python prints them to stderr.
+    Options are named as arguments."""
+    for warning in warnings:
+        text = re.sub(r"--([a-z][a-z-]+)", lambda option: option[1].replace("-", "_") + "=", warning.text)
+        logging.getLogger("adaptiso").warning("%s%s", f"{call}: " if call else "", Warned(text, file=warning.file or file))
 
 
 def shown(value: Any) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import logging
 import math
 import os
 import pathlib
@@ -20,9 +19,9 @@ from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, Warned, count, flag, is_path, listed, number,
                          path as checked_path, progress as checked_progress, shown,
-                         threads as checked_threads, word)
+                         threads as checked_threads, warn, word)
 from ._images import Samples, base_name, read_only, samples_of
-from ._mesh import Mesh, load, require_known_frames, stated_frames
+from ._mesh import Mesh, mesh_data_of, require_known_frames, stated_frames
 from ._options import checked, takes
 from ._quality import Check
 
@@ -30,8 +29,6 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._option_types import BemOptions
-
-logger = logging.getLogger("adaptiso")
 
 PRESETS = tuple(_adaptiso.tissue_presets())
 TISSUES = ("brain", "csf", "skull", "scalp")
@@ -262,7 +259,8 @@ class HeadModel:
             return f"<adaptiso.HeadModel: none: {self._data.failure}>"
         sizes = ", ".join(f"{name} of {len(mesh.vertices):,} vertices"
                          for name, mesh in self.surfaces.items())
-        return f"<adaptiso.HeadModel: {sizes}>"
+        guessed = any(warning.code == "guessed-brain" for warning in self._data.warnings)
+        return f"<adaptiso.HeadModel: {sizes}{'; the brain was guessed' if guessed else ''}>"
 
 
 class _Source(NamedTuple):
@@ -451,8 +449,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         data = _adaptiso.make_bem({**source.as_dict(), **named}, options, given_threads, callback)
     if mesher and data.has_model:
         _fill(data, mesher, element_mm)
-    for warning in data.warnings[len(source.warnings):]:
-        logger.warning("bem: %s", warning)
+    warn(data.warnings[len(source.warnings):], "bem")
     model = HeadModel(data, given_threads)
     if not data.has_model:
         raise NoModel(f"no model: {data.failure}", model)
@@ -519,21 +516,9 @@ def _surfaces(name: str, framed: List[Tuple[Any, Optional[str]]], source: _Sourc
     role = {"surfaces": "surface", "pial": "pial surface", "sources": "source surface"}[name]
     meshes = []
     for surface, stated in framed:
-        if stated is not None and not is_path(surface):
-            raise Error("input_coordinates: is for files; a mesh in memory has its frame")
         file = base_name(checked_path(name, surface)) if is_path(surface) else ""
         source.inputs.append([file, role, "file" if file else type(surface).__name__])
-        if isinstance(surface, Mesh):
-            meshes.append(surface)
-        elif file:
-            meshes.append(load(surface, input_coordinates=stated))
-        elif isinstance(surface, (tuple, list)) and len(surface) == 2:
-            meshes.append(Mesh(*surface))
-        elif hasattr(surface, "vertices") and hasattr(surface, "faces"):
-            meshes.append(Mesh(surface.vertices, surface.faces))
-        else:
-            raise Error(f"{name} {shown(surface)}: must be a Mesh, (vertices, faces), or a file's "
-                        "name")
+        meshes.append(Mesh._of(mesh_data_of(surface, False, stated, name)))
     require_known_frames([mesh.frame for mesh in meshes],
                          [f"{name}: number {n + 1}" for n in range(len(meshes))])
     if source.images and any(mesh.frame == "unknown" for mesh in meshes):

@@ -4,7 +4,6 @@ an affine, uncopied where they can be."""
 from __future__ import annotations
 
 import contextlib
-import logging
 import os
 import re
 import sys
@@ -18,15 +17,13 @@ import numpy.typing as npt
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import Warned, is_path, path, shown
+from ._arguments import Warned, is_path, path, shown, warn
 from ._options import checked, rows, takes
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._option_types import ReadOptions
-
-logger = logging.getLogger("adaptiso")
 
 Array = npt.NDArray[Any]
 Affine = npt.NDArray[np.float64]
@@ -125,14 +122,17 @@ def _read(file: Any, options: Mapping[str, Any] = {}) -> Tuple[Image, str]:
         with _reading:
             array, affine, kind, warnings, scaling = _adaptiso.read_image(name, given)
     except Error as error:
-        raise Error(_in_python(str(error))) from None
-    for warning in warnings:
-        logger.warning("%s", warning.of(base_name(name)))
+        raise Error(_in_python(str(error), name)) from None
+    warn(warnings, file=base_name(name))
     return Image(array, affine, warnings, kind), scaling
 
 
-def _in_python(message: str) -> str:
-    """A reader's message, which names options as the programs have them."""
+def _in_python(message: str, name: str) -> str:
+    """A reader's message, which names options as the programs have them, and functions."""
+    if "not a format that is read here" in message:
+        with contextlib.suppress(Error):
+            _adaptiso.read_mesh(name, None, None, True, None)
+            return re.sub(": [^:]*not a format that is read here.*", ": is a surface; adaptiso.load reads it", message)
     message = message.replace("--level, --channel, --time, --refuse-missing-chunks",
                               "level, channel, time, all_chunks")
     message = message.replace("; adaptiso-mesh --list-series prints what is known of each", "")
@@ -341,7 +341,7 @@ def prepared(array: Array, affine: Any, file: str, kind: str, warnings: List[War
         bad = volume.count_not_finite()
         if bad:
             told.append(Warned(f"{bad} voxels are NaN or infinite; NaN counts as outside", "not-finite"))
-            logger.warning("image: %s", told[-1])
+            warn(told[-1:], "image")
     return Samples(array, volume, matrix, file, kind, told)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import json
-import logging
 from typing import (TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple,
                     Union)
 
@@ -14,7 +13,7 @@ import numpy.typing as npt
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, count, is_path, listed, path as checked_path,
-                         progress as checked_progress, shown, threads as checked_threads)
+                         progress as checked_progress, shown, threads as checked_threads, warn)
 from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import IN_VOXELS, Mesh, is_identity
 from ._options import checked, takes
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._option_types import LabelsOptions
-
-logger = logging.getLogger("adaptiso")
 
 LabelArray = npt.NDArray[np.int32]
 #: Larger labels coincide in single precision; 0 is the outside.
@@ -136,25 +133,36 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         meet at edges where regions do."""
         return Mesh._of(self._data.walls())
 
-    def region(self, label: int) -> Mesh:
+    def region(self, label: Union[int, str]) -> Mesh:
         """The surface of one region: closed, outward; its vertices are those of `vertices`, to the
         bit, in their order.
 
         Parameters
         ----------
-        label : int
+        label : int or str
+            Number or name.
 
         Raises
         ------
         Error
-            There is no such region.
+            There is no such region, or several have the name.
         """
+        if isinstance(label, str):
+            names = _Names({region.label: (region.name, None) for region in self.regions.values()})
+            found = names.labels_of(label, "label")
+            if len(found) > 1:
+                raise Error(f"label {shown(label)}: is the name of {', '.join(map(str, found))}; give a number")
+            label = found[0]
         number = count("label", label, -_MOST, _MOST)
         if number not in self.regions:
             raise Error(f"label {number}: is no region here")
         mesh = self._data.region(number)
         mesh.error_bound = self.error_bound
         return Mesh._of(mesh)
+
+    def plot(self, file: Any = None, **options: Any) -> None:
+        """Show or draw all walls, in one colour, as `Mesh.plot` does a mesh."""
+        self.walls.plot(file, **options)
 
     def save(self, path: Any, frame: Optional[str] = None) -> None:
         """Write the walls as a .vtp with the arrays label0 and label1 of its cells: walls.vtp of
@@ -175,7 +183,8 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         """
         name = checked_path("path", path)
         if not name.lower().endswith(".vtp"):
-            raise Error(f"{name}: walls are saved as .vtp; region(label).save(path) takes others")
+            raise Error(f"{name}: walls are saved as .vtp; region(label).save(path) takes others; "
+                        "the program adaptiso-labels writes all regions into a .glb or .3mf")
         self._save(name, frame)
 
     def __len__(self) -> int:
@@ -217,7 +226,7 @@ class _Names:
         return [(name or f"region {label}", (red, green, blue))
                 for label, (name, _), (red, green, blue) in zip(labels, entries, colors)]
 
-    def labels_of(self, name: str) -> List[int]:
+    def labels_of(self, name: str, argument: str = "labels") -> List[int]:
         """\\raises Error"""
         known = {label: entry[0] for label, entry in self.table.items() if label != 0}
         found = ([label for label, other in known.items() if other == name]
@@ -226,7 +235,7 @@ class _Names:
             return found
         near = [other for other in known.values() if name.lower() in other.lower()][:5]
         near = near or difflib.get_close_matches(name, known.values())
-        raise Error(f"labels {shown(name)}: no label has this name; "
+        raise Error(f"{argument} {shown(name)}: no label has this name; "
                     + (f"did you mean {', '.join(near)}?" if near
                        else "names= takes a table of names" if not known else "see regions"))
 
@@ -335,8 +344,7 @@ def _names(names: Any, image: Any) -> _Names:
         entries, warnings = _adaptiso.find_label_table(file)
     else:
         return _Names({})
-    for warning in warnings:
-        logger.warning("%s", warning.of(base_name(file)))
+    warn(warnings, file=base_name(file))
     return _Names({value: (name, None if color is None else (color[0], color[1], color[2]))
                    for value, name, _, color in entries})
 

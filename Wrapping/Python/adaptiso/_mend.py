@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, number, progress as checked_progress,
-                         threads as checked_threads)
-from ._mesh import Mesh, mesh_data_of, stated_frames
+                         threads as checked_threads, warn)
+from ._mesh import Mesh, mesh_data_of, stated_frames, whole
 from ._options import checked, takes
 from ._quality import names_of, require_one_frame
 
@@ -31,7 +31,7 @@ def mend(mesh: Any, faces: Any = None, *, around: Any = None, gap: Optional[floa
 
     Parameters
     ----------
-    mesh : Mesh, (vertices, faces), path, object with vertices and faces, or vertices
+    mesh : Mesh, (vertices, faces), path, vtkPolyData, object with vertices and faces, or vertices
         In any unit: `max_error` and `max_hole` are in the same. Vertices have the shape (n, 3).
     faces : array_like of integers of shape (m, 3), optional
         Where `mesh` holds vertices alone.
@@ -80,7 +80,7 @@ def mend(mesh: Any, faces: Any = None, *, around: Any = None, gap: Optional[floa
     >>> mended.is_closed, mended.report["border_edges"], len(mended.report["filled"])
     (True, 3, 1)
     """
-    surfaces = [mesh if faces is None else (mesh, faces)] + ([] if around is None else [around])
+    surfaces = [whole(mesh, faces, "max_error")] + ([] if around is None else [around])
     data = [mesh_data_of(each, False, frame)
             for each, frame in zip(surfaces, stated_frames(input_coordinates, surfaces))]
     require_one_frame(data, surfaces, names_of(surfaces, None))
@@ -90,4 +90,5 @@ def mend(mesh: Any, faces: Any = None, *, around: Any = None, gap: Optional[floa
     made, found = _adaptiso.mend_mesh(
         data[0], checked("mend", options), None if around is None else data[1], distance,
         checked_threads(threads), checked_progress(progress))
+    warn(found["warnings"], "mend")
     return Mesh._of(made, found)

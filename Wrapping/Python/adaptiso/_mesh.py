@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import logging
 import os
 import sys
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
@@ -14,7 +13,7 @@ import numpy.typing as npt
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, is_path, path as checked_path, progress as checked_progress, shown,
-                         threads as checked_threads, word)
+                         threads as checked_threads, warn, word)
 from ._images import affine_of, base_name, read
 from ._options import checked, takes
 from ._triangles import Faces, Triangles, Vertices
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._option_types import SimplifyOptions
-
-logger = logging.getLogger("adaptiso")
 
 
 #: The frame of what was made of an array without an affine, in words.
@@ -87,7 +84,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         mesh = cls.__new__(cls)
         mesh._data = data
         mesh._normals = None
-        mesh._report = None
+        mesh._report = report
         if report is not None:
             data.report = json.dumps(report)
         return mesh
@@ -160,6 +157,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
             raise Error("simplify: one of max_error, triangles and reduction must be given")
         made, found = _adaptiso.simplify_mesh(self._data, checked("simplify", options),
                                               checked_threads(threads), checked_progress(progress))
+        warn(found["warnings"], "simplify")
         return Mesh._of(made, found)
 
     def transform(self, matrix: Any) -> "Mesh":
@@ -381,10 +379,18 @@ def load(path: Any, *, volume: Any = None, input_coordinates: Optional[str] = No
     """
     name = checked_path("path", path)
     shape, affine = (None, None) if volume is None else _geometry_of(volume)
-    data, warnings = _adaptiso.read_mesh(name, shape, affine, False, _stated(input_coordinates))
-    for warning in warnings:
-        logger.warning("%s", warning.of(base_name(name)))
-    return Mesh._of(data)
+    return Mesh._of(_read_file(name, shape, affine, False, _stated(input_coordinates)))
+
+
+def _read_file(name: str, shape: Any, affine: Any, keeps_faults: bool,
+               input_coordinates: Optional[str]) -> _adaptiso.MeshData:
+    """\\raises Error"""
+    try:
+        data, warnings = _adaptiso.read_mesh(name, shape, affine, keeps_faults, input_coordinates)
+    except Error as error:
+        raise Error(str(error).replace("adaptiso-mesh makes", "adaptiso.surface makes")) from None
+    warn(warnings, file=base_name(name))
+    return data
 
 
 def stated_frames(input_coordinates: Any, surfaces: Sequence[Any]) -> List[Optional[str]]:
@@ -412,27 +418,36 @@ def require_known_frames(frames: Sequence[str], names: Sequence[str]) -> None:
                     "by input_coordinates=")
 
 
-def mesh_data_of(value: Any, keeps_faults: bool,
-                 input_coordinates: Optional[str] = None) -> _adaptiso.MeshData:
-    """A mesh, (vertices, faces), a file's name, or an object with vertices and faces (trimesh's)."""
+def whole(mesh: Any, faces: Any, hint: str = "") -> Any:
+    """A function's first two arguments as `mesh_data_of` takes them: vertices and faces, or one mesh.
+    \\raises Error"""
+    if faces is None:
+        return mesh
+    if np.isscalar(faces):
+        raise Error(f"faces {shown(faces)}: must be a table of integers"
+                    + (f"; {hint}={shown(faces)}?" if hint and not isinstance(faces, (str, bytes)) else ""))
+    return mesh, faces
+
+
+def mesh_data_of(value: Any, keeps_faults: bool, input_coordinates: Optional[str] = None,
+                 name: str = "mesh") -> _adaptiso.MeshData:
+    """A mesh, (vertices, faces), a file's name, VTK's or PyVista's data, or an object with vertices and
+    faces (trimesh's)."""
     if input_coordinates is not None and not is_path(value):
         raise Error("input_coordinates: is for files; a mesh in memory has its frame")
     if isinstance(value, Mesh):
         return value._data
     if is_path(value):
-        if not keeps_faults:
-            return load(value, input_coordinates=input_coordinates)._data
-        name = checked_path("mesh", value)
-        data, warnings = _adaptiso.read_mesh(name, None, None, True, input_coordinates)
-        for warning in warnings:
-            logger.warning("%s", warning.of(base_name(name)))
-        return data
+        return _read_file(checked_path(name, value), None, None, keeps_faults, input_coordinates)
     if isinstance(value, (tuple, list)) and len(value) == 2:
         vertices, faces = value
+    elif hasattr(value, "GetPolys"):
+        from ._vtk_data import arrays_of
+        vertices, faces = arrays_of(value)
     elif hasattr(value, "vertices") and hasattr(value, "faces"):
         vertices, faces = value.vertices, value.faces
     else:
-        raise Error(f"mesh {shown(value)}: must be a Mesh, (vertices, faces), or a file's name")
+        raise Error(f"{name} {shown(value)}: must be a Mesh, (vertices, faces), or a file's name")
     return _adaptiso.MeshData.from_arrays(_table("vertices", vertices, np.float64),
                                           _table("faces", faces, np.int64),
                                           keeps_faults=keeps_faults)

@@ -114,12 +114,17 @@ def _advice(subject: str, typed: str, known: List[str]) -> str:
     if "spacing" in known and typed.replace("_", "").lower() in ("voxelsize", "voxelspacing", "pixdim", "zooms"):
         return "; did you mean spacing=? (resample= makes new samples)"
     program = {each: name for name, each in _FUNCTIONS.items()}.get(subject, subject)
-    options = [name.replace("_", "-") for name in known] + ["iso"] * ("level" in known and subject != "read")
-    answer = _adaptiso.habit_answer(f"adaptiso-{program}", typed, options)
+    stored = {name: str(row["name"]) for name, row in rows(subject).items()}
+    options = {stored.get(name, name.replace("_", "-")): name for name in known}
+    if "level" in known and subject != "read":
+        options["iso"] = "level"
+    if typed.replace("_", "-") in options:
+        return f"; did you mean {options[typed.replace('_', '-')]}=?"
+    answer = _adaptiso.habit_answer(f"adaptiso-{program}", typed, list(options))
     if answer is None:
         near = difflib.get_close_matches(typed, known, 1)
         return f"; did you mean {near[0]}=?" if near else ""
-    for option, name in zip(options, [*known, "level"]):
+    for option, name in options.items():
         answer = re.sub(rf"--{option}(?![a-z-])( (?=[A-Z0-9]))?", name + "=", answer)
     for program, name in _FUNCTIONS.items():
         answer = answer.replace(f"adaptiso-{program}", f"adaptiso-{name}")

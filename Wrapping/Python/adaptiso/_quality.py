@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, 
 
 from . import _adaptiso
 from ._adaptiso import Error
-from ._arguments import (Progress, count, flag, is_path, listed, path as checked_path,
-                         progress as checked_progress, shown, threads as checked_threads, word)
+from ._arguments import (Progress, Warned, count, flag, is_path, listed, path as checked_path,
+                         progress as checked_progress, shown, threads as checked_threads, warn, word)
 from ._images import base_name
-from ._mesh import Mesh, logger, mesh_data_of, require_known_frames, stated_frames
+from ._mesh import mesh_data_of, require_known_frames, stated_frames, whole
 from ._options import checked, takes
 
 if TYPE_CHECKING:
@@ -134,19 +134,21 @@ class Comparison(_Report):
 
     def __repr__(self) -> str:
         return (f"<adaptiso.Comparison: mean {self.mean:.4g} mm, 95 % {self.p95:.4g} mm, "
-                f"max {self.hausdorff[1]:.4g} mm>")
+                f"max {self.max:.4g} mm, proved at most {self.hausdorff[1]:.4g} mm>")
 
 
 @takes("check")
-def check(mesh: Any, profile: str = "print", *, input_coordinates: Optional[str] = None,
+def check(mesh: Any, faces: Any = None, profile: str = "print", *, input_coordinates: Optional[str] = None,
           threads: int = 0, **options: Unpack[CheckOptions]) -> Check:
     """Check whether a surface is sound: closed, manifold, oriented, without crossing triangles, of
     a plausible size.
 
     Parameters
     ----------
-    mesh : Mesh, (vertices, faces), path, or an object with vertices and faces
+    mesh : Mesh, (vertices, faces), path, vtkPolyData, object with vertices and faces, or vertices
         mm, in any frame; may be broken in any way.
+    faces : array_like of integers of shape (m, 3), optional
+        Where `mesh` holds vertices alone; else the profile may stand here.
     profile : {"bem", "print", "view"}
         Use of the surface, which determines the required checks.
     **options
@@ -169,7 +171,10 @@ def check(mesh: Any, profile: str = "print", *, input_coordinates: Optional[str]
     >>> adaptiso.check((points, faces[:3])).failed
     ['closed']
     """
-    text = _adaptiso.check(mesh_data_of(mesh, True, *stated_frames(input_coordinates, [mesh])),
+    if isinstance(faces, str):
+        faces, profile = None, faces
+    mesh = whole(mesh, faces)
+    text = _adaptiso.check(mesh_data_of(mesh, True, stated_frames(input_coordinates, [mesh])[0]),
                            word("profile", profile, PROFILES), checked("check", options),
                            checked_threads(threads))
     return Check(json.loads(text))
@@ -275,8 +280,7 @@ def compare(a: Any, b: Any, *, samples: int = 200000, symmetric: bool = True,
                              flag("symmetric", symmetric), checked_threads(threads),
                              checked_progress(progress))
     comparison = Comparison(json.loads(text))
-    for warning in comparison.report["warnings"]:
-        logger.warning("compare: %s", warning["text"])
+    warn((Warned(each["text"]) for each in comparison.report["warnings"]), "compare")
     return comparison
 
 

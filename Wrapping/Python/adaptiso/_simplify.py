@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Optional
 
-import numpy as np
-
-from ._adaptiso import Error
-from ._arguments import Progress, shown
-from ._mesh import Mesh, mesh_data_of, stated_frames
+from ._arguments import Progress
+from ._mesh import Mesh, mesh_data_of, stated_frames, whole
 from ._options import takes
 
 if TYPE_CHECKING:
@@ -33,7 +30,7 @@ def simplify(mesh: Any, faces: Any = None, *, input_coordinates: Optional[str] =
 
     Parameters
     ----------
-    mesh : Mesh, (vertices, faces), path, object with vertices and faces, or vertices
+    mesh : Mesh, (vertices, faces), path, vtkPolyData, object with vertices and faces, or vertices
         In any unit: `max_error` is in the same. Vertices have the shape (n, 3).
     faces : array_like of integers of shape (m, 3), optional
         Where `mesh` holds vertices alone.
@@ -69,9 +66,6 @@ def simplify(mesh: Any, faces: Any = None, *, input_coordinates: Optional[str] =
     >>> len(coarse.faces) < len(fine.faces) / 10, coarse.is_closed, coarse.error_bound <= 0.2
     (True, True, True)
     """
-    if faces is not None and np.ndim(faces) == 0:
-        raise Error(f"faces {shown(faces)}: must be a table of integers"
-                    + (f"; max_error={faces}?" if isinstance(faces, (int, float)) else ""))
-    given = mesh if faces is None else (mesh, faces)
-    data = mesh_data_of(given, False, *stated_frames(input_coordinates, [given]))
+    given = whole(mesh, faces, "max_error")
+    data = mesh_data_of(given, False, stated_frames(input_coordinates, [given])[0])
     return Mesh._of(data).simplify(threads=threads, progress=progress, **options)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, Warned, number, progress as checked_progress, shown,
-                         threads as checked_threads)
+                         threads as checked_threads, warn)
 from ._images import (Samples, keep_read_only, prepared, read_only, samples_of, stated_affine)
-from ._mesh import Mesh, logger
+from ._mesh import Mesh
 from ._options import checked, rows, takes
 
 if TYPE_CHECKING:
@@ -151,6 +151,5 @@ def _make(samples: Samples, index: Optional[_adaptiso.ArrayIndex], level: Any,
         samples.volume, index, isovalue, options, checked_threads(threads),
         checked_progress(progress), file=samples.file, format=samples.format,
         warnings=samples.warnings)
-    for warning in data.surface_warnings:
-        logger.warning("surface: %s", warning.of(samples.file))
+    warn(data.surface_warnings, "surface", samples.file)
     return Mesh._of(data)

@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
-import logging
 import os
-from typing import Generic, Optional, TypeVar, Union
+from typing import TYPE_CHECKING, Generic, Optional, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _adaptiso
-from ._arguments import word
+from ._arguments import Warned, warn, word
 
 Vertices = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]
 
 FRAMES = ("ras", "lps", "tkras", "voxel")
 
-logger = logging.getLogger("adaptiso")
-
 Data = TypeVar("Data", bound=Union[_adaptiso.MeshData, _adaptiso.LabelData])
+
+
+#: What PyVista's and trimesh's users type first; texts that begin with a method of the object's class
+#: are left out where the class has none.
+_MEANT = {"export": "save(path)", "write": "save(path)", "show": "plot()", "decimate": "simplify()",
+          "decimate_pro": "simplify()", "simplify_quadric_decimation": "simplify()",
+          "n_points": "len(mesh.vertices)", "n_vertices": "len(mesh.vertices)",
+          "n_cells": "len(mesh.faces)", "n_faces": "len(mesh.faces)", "triangles": "faces",
+          "point_normals": "normals", "vertex_normals": "normals", "apply_transform": "transform(matrix)",
+          "is_manifold": "adaptiso.check(mesh)", "fill_holes": "adaptiso.mend(mesh)",
+          "area_faces": "to_trimesh()", "face_normals": "to_trimesh()", "centroid": "to_trimesh()"}
 
 
 class Triangles(Generic[Data]):
@@ -38,6 +46,13 @@ class Triangles(Generic[Data]):
     def faces(self) -> Faces:
         """int64, shape (m, 3), rows of `vertices`: a read-only view of the object's own memory."""
         return self._data.faces
+
+    if not TYPE_CHECKING:
+        def __getattr__(self, name: str) -> object:
+            meant = _MEANT.get(name, "")
+            is_there = "mesh" in meant or hasattr(type(self), meant.partition("(")[0])
+            raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'"
+                                 + (f"; did you mean {meant}?" if is_there else ""))
 
     @property
     def points(self) -> Vertices:
@@ -59,4 +74,4 @@ class Triangles(Generic[Data]):
             word("frame", frame, FRAMES)
         warning = self._data.write(name, frame)
         if warning:
-            logger.warning("%s: %s", os.path.basename(name), warning)
+            warn([Warned(warning)], file=os.path.basename(name))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, List
+from typing import Any, List, Tuple
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+from ._adaptiso import Error
 
 
 def show(data: Any) -> None:
@@ -27,6 +29,17 @@ def show(data: Any) -> None:
     interactor = vtkRenderWindowInteractor()
     interactor.SetRenderWindow(window)
     interactor.Start()
+
+
+def arrays_of(data: Any) -> Tuple[Any, Any]:
+    """Vertices and faces of a vtkPolyData. \\raises Error"""
+    cells, points = data.GetPolys(), data.GetPoints()
+    sizes = np.diff(vtk_to_numpy(cells.GetOffsetsArray()))
+    if data.GetNumberOfStrips() or (sizes != 3).any():
+        raise Error("the data have polygons or strips, must have triangles (vtkTriangleFilter makes "
+                    "them)")
+    return (np.empty((0, 3)) if points is None else vtk_to_numpy(points.GetData()),
+            vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3))
 
 
 def fill(output: Any, meshes: List[Any], turn: Any, with_normals: bool) -> None:

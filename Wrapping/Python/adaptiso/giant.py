@@ -13,7 +13,6 @@ adaptiso-giant, which has to be on the PATH. What fits into memory is better mad
 from __future__ import annotations
 
 import json
-import logging
 import os
 import re
 import shutil
@@ -22,8 +21,8 @@ import subprocess
 from typing import TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional
 
 from ._adaptiso import Error, InternalError
-from ._arguments import (count, listed, number, optional_number, path as checked_path, shown,
-                         threads as checked_threads, word)
+from ._arguments import (Warned, count, listed, number, optional_number, path as checked_path, shown,
+                         threads as checked_threads, warn, word)
 from ._options import program_options, takes
 
 if TYPE_CHECKING:
@@ -36,8 +35,6 @@ __all__ = ["Plan", "join", "plan", "read_plan", "run", "seam", "tile"]
 PROGRAM = "adaptiso-giant"
 METHODS = ("adaptive", "mc")
 FRAMES = ("ras", "lps", "voxel")
-
-logger = logging.getLogger("adaptiso")
 
 
 class Plan(NamedTuple):
@@ -282,8 +279,7 @@ def _run(arguments: List[str]) -> Dict[str, Any]:
             raise
     lines = [line.replace(PROGRAM + ": ", "", 1) for line in complaints.splitlines() if line]
     if process.returncode in (0, 1):
-        for line in lines:
-            logger.warning("%s", line.replace("warning: ", "", 1))
+        warn(Warned(line.replace("warning: ", "", 1)) for line in lines)
         report = json.loads(told)
         if not isinstance(report, dict):
             raise InternalError(f"{PROGRAM}: its report is none")

@@ -36,7 +36,7 @@ from ._images import read_only, samples_of
 from ._mesh import Mesh
 from ._options import checked
 from ._simplify import simplify
-from ._vtk_data import fill
+from ._vtk_data import arrays_of, fill
 
 __all__ = ["Isosurface", "Simplify"]
 
@@ -304,15 +304,8 @@ def _add_bounds(output: Any, bounds: List[float]) -> None:
 
 def _mesh_of(data: Any) -> Mesh:
     """\\raises Error"""
-    cells = data.GetPolys()
-    sizes = np.diff(vtk_to_numpy(cells.GetOffsetsArray()))
-    if data.GetNumberOfStrips() or (sizes != 3).any():
-        raise Error("the data have polygons or strips, must have triangles (vtkTriangleFilter makes "
-                    "them)")
-    faces = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3)
     normals = data.GetPointData().GetNormals()
-    return Mesh(vtk_to_numpy(data.GetPoints().GetData()), faces,
-                None if normals is None else vtk_to_numpy(normals))
+    return Mesh(*arrays_of(data), None if normals is None else vtk_to_numpy(normals))
 
 
 def _carry_point_data(given: Any, mesh: Mesh, made: Mesh, output: Any) -> None:
