@@ -98,9 +98,10 @@ bool isGzip(const fs::path& file) {
 /// The surface that the result is to lie around, in the frame of the input's file.
 TriangleMesh readFixed(const MeshFile& input, MendRun& run) {
     const fs::path& file = run.command.around;
-    std::array<NamedMesh, 2> both{{{run.command.input, input},
-                                   {file, readMesh(file, {.inputCoordinates = statedFrame(
-                                                              run.command.inputCoordinates, 1)})}}};
+    std::optional<CoordinateFrame> stated;  // one frame is of the mesh alone
+    if (run.command.inputCoordinates.size() > 1) stated = run.command.inputCoordinates[1];
+    std::array<NamedMesh, 2> both{
+        {{run.command.input, input}, {file, readMesh(file, {.inputCoordinates = stated})}}};
     MeshFile &own = both[0].file, &fixed = both[1].file;
     addWarnings(run.warnings, fixed.warnings, baseName(file));
     const CommonFrame common =

@@ -89,7 +89,8 @@ void printInput(std::ostream& out, const MendRun& run) {
     out << oneLine(input.file.string()) << ": " << formatCount(input.triangles) << " triangles, "
         << input.format->name << ", " << frameText(input.frame) << '\n';
     if (run.statistics.wasSound) {
-        out << "  sound: closed, 2-manifold, oriented, nothing crosses\n";
+        out << "  sound: " << (run.statistics.leftOpen.empty() ? "closed" : "open")
+            << ", 2-manifold, oriented, nothing crosses\n";
     }
     for (const std::string& fault : mendFaultTexts(run.statistics)) out << "  " << fault << '\n';
 }

@@ -58,7 +58,8 @@ void declareMendOptions(CLI::App& app, MendCommand& command) {
     OptionGroup(app).text(
         "MESH", "", command.input,
         "A mesh of triangles or polygons, in any format adaptiso-mesh writes, with any faults");
-    declareInputCoordinates(OptionGroup(app, "Input"), command.inputCoordinates, "the mesh");
+    declareInputCoordinates(OptionGroup(app, "Input"), command.inputCoordinates,
+                            "the mesh, given twice also of the surface of --around");
     const OptionGroup extent(app, "Extent");
     extent.rows(mendOptions(), command.aim);
     extent.text("--around", "FIXED", command.around,

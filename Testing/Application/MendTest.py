@@ -10,6 +10,7 @@ import subprocess
 from support import BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, lines, main
 from headDefects import flipped, icosphere, soup
 from checkSupport import together, write_stl
+from compareSupport import LPS
 from simplifySupport import SimplifyTest, documented_keys, keys_of, ply, write_pial, read_pial
 
 MEND = str(BIN / "adaptiso-mend")
@@ -200,6 +201,15 @@ class Around(MendTest):
         self.assertTrue(nested["passed"], nested)
         again = self.mend("around.off", "--around", "inner.off", "--gap", 2, "-o", "again.off")
         self.assertEqual((again["output"]["copied"], again["output"]["around"]["movedVertices"]), (True, 0))
+
+    def test_a_stated_frame_is_of_the_mesh_alone(self):
+        """FIXED says LPS: to the right of the middle in RAS, where the mesh is pushed out."""
+        self.write("inner.off", shifted(icosphere(30), 9), LPS)
+        self.write("outer.off", BALL)
+        arguments = ("outer.off", "--around", "inner.off", "--gap", 2, "--input-coordinates", "ras", "-o")
+        self.mend(*arguments, "out.vtp")
+        self.mend("outer.off", "--around", "inner.off", "--gap", 2, "-o", "own.vtp")
+        self.assertEqual(self.path("out.vtp").read_bytes(), self.path("own.vtp").read_bytes())
 
     def test_values_are_those_of_where_a_point_was(self):
         self.write("inner.off", shifted(icosphere(30), 9))

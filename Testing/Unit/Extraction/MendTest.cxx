@@ -351,6 +351,24 @@ TEST(Mend, RefusesCoordinatesWithoutDigits) {
     expectMended(mend(far, options));
 }
 
+TEST(Mend, LeavesASoundOpenSheetAsItIs) {
+    MendOptions options = within(0.05);
+    options.leavesHolesOpen = true;
+    TriangleMesh half = bare(icosphere(3));  // a dome, and a plane that winds around nothing
+    std::erase_if(half.triangles, [&](const Triangle& t) {
+        return half.points[t[0]].z < 0 || half.points[t[1]].z < 0 || half.points[t[2]].z < 0;
+    });
+    for (const TriangleMesh& sheet : {half, bare(planeMesh(10, 1))}) {
+        const Mended mended = mend(sheet, options);
+        EXPECT_EQ(mended.mesh, withoutUnusedPoints(sheet));
+        EXPECT_EQ(mended.statistics.leftOpen.size(), 1U);
+    }
+}
+
+TEST(Mend, LeavesASoundMeshByAnyBound) {
+    EXPECT_TRUE(mend(bare(icosphere(3)), within(1000)).statistics.wasSound);
+}
+
 TEST(Mend, RefusesWhatEnclosesNothing) {
     const TriangleMesh triangle{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {{0, 1, 2}}};
     for (const TriangleMesh& mesh : {planeMesh(4, 1), triangle, planeMesh(40, 1)}) {

@@ -81,8 +81,11 @@ def mend(mesh: Any, faces: Any = None, *, around: Any = None, gap: Optional[floa
     (True, 3, 1)
     """
     surfaces = [whole(mesh, faces, "max_error")] + ([] if around is None else [around])
+    stated = input_coordinates
+    if isinstance(stated, str) and around is not None:
+        stated = [stated, None]  # of the mesh alone
     data = [mesh_data_of(each, False, frame)
-            for each, frame in zip(surfaces, stated_frames(input_coordinates, surfaces))]
+            for each, frame in zip(surfaces, stated_frames(stated, surfaces))]
     require_one_frame(data, surfaces, names_of(surfaces, None))
     if (around is None) != (gap is None):
         raise Error("around, gap: each needs the other")

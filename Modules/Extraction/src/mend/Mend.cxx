@@ -205,7 +205,8 @@ void splitFans(TriangleMesh& mesh) {
 /// is harmonic.
 void requireVolume(const MendInput& input, const detail::WindingField& field, double boundMm,
                    double maxErrorMm) {
-    const double depthMm = spacingFor(boundMm) / 4;  // what is thinner is dropped
+    const double depthMm =  // what is thinner is dropped
+        std::min(spacingFor(boundMm) / 4, 0.01 * norm(boundingBox(input.mesh).size()));
     for (std::int64_t t = 0; t < std::ssize(input.mesh.triangles); ++t) {
         const Corners c = cornersOf(input.mesh, t);
         const Vec3 middle = (1.0 / 3) * (c[0] + c[1] + c[2]);
@@ -336,6 +337,40 @@ void makeBalls(MendAssembly& assembly, const BoundingBox& box, MendStatistics& s
     statistics.resultToInputMm += 1e-15 * (norm(box.minimum) + norm(box.maximum));
 }
 
+double widestHole(const MendOptions& options, const BoundingBox& box) {
+    return options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * norm(box.size()));
+}
+
+/// The borders of an oriented 2-manifold that crosses nothing, the widest first; empty: it is none,
+/// or is closed.
+std::vector<MendedPlace> bordersOfSheets(const TriangleMesh& mesh, const MendInput& input,
+                                         const MendStatistics& found) {
+    if (found.borderEdges == 0 || found.degenerateTriangles > 0 || found.duplicateTriangles > 0 ||
+        found.mergedPoints > 0 || found.flippedTriangles > 0 || found.badEdges > 0 ||
+        found.badVertices > 0 || found.crossingTriangles > 0 || input.oneSidedMm) {
+        return {};
+    }
+    std::vector<std::pair<VertexId, VertexId>> edges;
+    for (const Triangle& t : mesh.triangles) {
+        for (int side = 0; side < 3; ++side)
+            edges.push_back(std::minmax(t[side], t[(side + 1) % 3]));
+    }
+    std::sort(edges.begin(), edges.end());
+    TriangleMesh borders{mesh.points, {}, {}};  // an edge as a triangle without area
+    for (std::size_t n = 0; n < edges.size(); ++n) {
+        const bool isTwice = (n > 0 && edges[n - 1] == edges[n]) ||
+                             (n + 1 < edges.size() && edges[n + 1] == edges[n]);
+        const auto [a, b] = edges[n];
+        if (!isTwice) borders.triangles.push_back({a, b, b});
+    }
+    std::vector<MendedPlace> places;
+    const std::vector<std::uint8_t> all(borders.triangles.size(), 1);
+    for (const auto& border : detail::connectedPlaces(borders, all)) {
+        places.push_back(border.first);
+    }
+    return places;
+}
+
 /// mend() of a prepared input. `statistics` holds what was found.
 TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, const BoundingBox& box,
                           const MendOptions& options, MendStatistics& statistics) {
@@ -348,8 +383,7 @@ TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, cons
     constexpr double kPartBesidesHandles = 0.75;
     const double boundMm = (options.removesHandles ? kPartBesidesHandles : 1) *
                            (statistics.maxErrorMm - statistics.movedMm);
-    const double maxHoleMm =
-        options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * norm(box.size()));
+    const double maxHoleMm = widestHole(options, box);
     requireVolume(input, field, boundMm, statistics.maxErrorMm);
     if (!options.leavesHolesOpen) {
         requireNarrowCaps(input, boundMm, maxHoleMm);
@@ -412,6 +446,17 @@ Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
     result.statistics.maxErrorMm = checkedBound(options, diagonal);
     requireDigits(box, diagonal, result.statistics.maxErrorMm);
     const MendInput input = detail::prepareInput(mesh, result.statistics);
+    if (options.leavesHolesOpen) {
+        auto borders = bordersOfSheets(mesh, input, result.statistics);
+        if (!borders.empty() && borders.back().spanMm > widestHole(options, box)) {
+            result.statistics.leftOpen = std::move(borders);
+            result.mesh = withoutUnusedPoints(mesh);
+            result.statistics.wasSound = result.mesh.points.size() == mesh.points.size();
+            if (!result.statistics.wasSound) result.mesh.normals.clear();
+            result.statistics.keptTriangles = std::ssize(mesh.triangles);
+            return result;
+        }
+    }
     try {
         result.mesh = mendPrepared(mesh, input, box, options, result.statistics);
     } catch (const InvalidInput& refusal) {
