@@ -94,15 +94,16 @@ export class MeshTab {
         try {
           const shape = await this.scan.looker.preview(isovalue);
           this.previewTriangles = shape.triangles.length / 3;
-          const { pieces, cavities } = countPieces(shape);
-          byId("largest-drops").textContent = pieces < 2 ? "" : `drops ${formatCount(pieces - 1)} smaller`;
-          byId("fill-drops").textContent = cavities < 1 ? "" : `drops ${formatCount(cavities)}`;
           const view = await this.page.view();
           await view?.showSurfaces([{ name: `preview at ${isovalue}`, shape, color: kPreview, opacity: 1 }]);
           const step = this.scan.facts?.previewStep ?? 1;
           byId("preview").textContent = `Preview: ${formatCount(this.previewTriangles)} triangles, not simplified`
             + (step > 1 ? `, of every ${step}${step === 2 ? "nd" : step === 3 ? "rd" : "th"} voxel` : "");
           Object.assign(byId("preview").dataset, { isovalue, milliseconds: Math.round(performance.now() - begin) });
+          if (this.wanted !== undefined) continue;
+          const { pieces, cavities } = countPieces(shape);
+          byId("largest-drops").textContent = pieces < 2 ? "" : `drops ${formatCount(pieces - 1)} smaller`;
+          byId("fill-drops").textContent = cavities < 1 ? "" : `drops ${formatCount(cavities)}`;
         } catch (error) {
           if (!(error instanceof Cancelled)) byId("preview").textContent = (error as Error).message;
         }

@@ -148,7 +148,8 @@ for (const browserName of kBrowsers) {
       }
       assert.equal(new Set(shown.map(({ text }) => text)).size, 4, JSON.stringify(shown));
       const [, seconds] = shown.map((each) => each.seconds).sort((a, b) => a - b);  // 0.1 to 0.4 on a busy machine
-      assert.ok(seconds < 1, JSON.stringify(shown));
+      // a module made quickly, on CI's slowest machine beside another browser
+      assert.ok(seconds < (process.env.ADAPTISO_WEB_QUICK ? 3 : 1), JSON.stringify(shown));
     });
 
     it("offers the programs' formats and presets", async () => {
