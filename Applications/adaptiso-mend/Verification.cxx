@@ -96,9 +96,12 @@ Verification measure(const VerifiedSurface& verified, const MendStatistics& stat
 }
 
 InvalidInput tooFewDigits(const std::string& fault, const MendRun& run) {
-    return InvalidInput(baseName(run.output.file) + ": " + std::string(run.output.format->name) +
-                        " keeps too few digits of this surface's coordinates, with which " + fault +
-                        "; write .vtp or .ply");
+    const MeshFormat& format = *run.output.format;
+    return InvalidInput(baseName(run.output.file) + ": " + std::string(format.name) +
+                        (format.sharesVertices
+                             ? " keeps too few digits of this surface's coordinates, with which "
+                             : " joins points whose digits are alike, with which ") +
+                        fault + "; write .vtp or .ply");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ import struct
 import subprocess
 
 from support import BAD_INPUT, BIN, CHECK_FAILED, OK, SOURCE, USAGE, lines, main
-from headDefects import flipped, icosphere, soup
+from headDefects import cube, flipped, icosphere, soup
 from checkSupport import together, write_stl
 from compareSupport import LPS
 from simplifySupport import SimplifyTest, documented_keys, keys_of, ply, write_pial, read_pial
@@ -251,6 +251,12 @@ class Refusals(MendTest):
         self.assertEqual((len(report["output"]["leftOpen"]), report["output"]["closed"]), (1, False))
         self.mend("cup.off", "--max-error", 1, "--max-hole", 120, "-o", "closed.off")
         self.assertTrue(self.check("closed.off")["passed"])
+
+    def test_boxes_that_share_an_edge_by_place_are_none_in_stl(self):
+        self.write("touch.off", together(cube((0, 0, 0), (1, 1, 1)), cube((1, 1, 0), (2, 2, 1))))
+        self.mend("touch.off", "-o", "same.off")
+        self.stays_out(BAD_INPUT, "out.stl: STL .binary. joins points .* no oriented 2-manifold; write .vtp or .ply",
+                       "touch.off", "-o", "out.stl")
 
     def test_usage_and_bad_input(self):
         self.write("ball.off", BALL)
