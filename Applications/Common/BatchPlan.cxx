@@ -56,7 +56,8 @@ std::string textOf(const fs::path& list, const std::string& option) {
     return text;
 }
 
-/// Of an input that is no file and looks like a value what was meant; empty: there is none.
+/// Advice on the first input that is no file and looks like the value of an option; empty if none
+/// does.
 std::string strayValue(std::span<const BatchItem> items) {
     for (const BatchItem& item : items) {
         for (const fs::path& input : item.inputs) {
@@ -85,9 +86,11 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch,
                 name + " " + value + ": must be a name below --output-dir");
         if (holdsName(value) || items.size() == 1) continue;
         const std::string stray = strayValue(items);
-        require(stray.empty(), stray);
-        require(false, name + " " + value +
-                           ": needs {name} in it, or the runs for all inputs would write the same");
+        throw UsageError(
+            !stray.empty() ? stray
+                           : name + " " + value +
+                                 ": needs {name} in it, or the runs for all inputs would write the "
+                                 "same");
     }
 }
 

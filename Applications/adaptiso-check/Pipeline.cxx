@@ -392,8 +392,8 @@ std::string mendingCommand(const fs::path& file, const std::string& more) {
            shellQuoted("mended-" + (keepsFormat ? name : name + ".vtp"));
 }
 
-/// The command that mends the first surface with faults that can be mended, or the first that lies
-/// too near around another; empty if there is none.
+/// The command for the first surface with faults that adaptiso-mend mends; if there is none, for
+/// the first that crosses the surface inside it or lies too near to it. Empty if there is neither.
 std::string mendingCommand(const CheckRun& run) {
     const auto found = std::ranges::find_if(run.surfaces, isForMending);
     if (found != run.surfaces.end()) return mendingCommand(found->file, "");

@@ -365,6 +365,17 @@ TEST(Mend, LeavesASoundOpenSheetAsItIs) {
     }
 }
 
+TEST(Mend, DropsAnInnerShellBesideAnOpenSheet) {
+    MendOptions options = within(0.2);
+    options.leavesHolesOpen = true;
+    TriangleMesh sheet = bare(planeMesh(10, 1));
+    for (Vec3& p : sheet.points) p.x += 5;
+    const Mended mended =
+        mend(merged({bare(icosphere(2)), bare(icosphere(2, {}, 0.5)), std::move(sheet)}), options);
+    EXPECT_FALSE(mended.statistics.wasSound);
+    EXPECT_FALSE(mended.statistics.inner.empty());
+}
+
 TEST(Mend, LeavesASoundMeshByAnyBound) {
     EXPECT_TRUE(mend(bare(icosphere(3)), within(1000)).statistics.wasSound);
 }

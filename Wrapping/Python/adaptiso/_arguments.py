@@ -53,7 +53,7 @@ def warn(warnings: Iterable[Warned], call: str = "", file: str = "") -> None:
     """Hands warnings to the logger "adaptiso"; without a handler Python prints them to stderr.
     Options are named as arguments."""
     for warning in warnings:
-        text = re.sub(r"--([a-z][a-z-]+)", lambda option: option[1].replace("-", "_") + "=", warning.text)
+        text = re.sub(r"(?<![\w-])--([a-z][a-z-]+)", lambda option: option[1].replace("-", "_") + "=", warning.text)
         logging.getLogger("adaptiso").warning("%s%s", f"{call}: " if call else "", Warned(text, file=warning.file or file))
 
 

@@ -52,7 +52,7 @@ function listenToTabs(): void {
   }
 }
 
-/** Of two ways, the field of the one that is off is off; an explanation closes when the focus leaves it, or by Escape. */
+/** Disables the field of the way that is not chosen. Closes an explanation that loses the focus, or by Escape. */
 function listenToFields(): void {
   const showWays = (): void => {
     for (const way of document.querySelectorAll<HTMLInputElement>(".field [type=radio]")) {

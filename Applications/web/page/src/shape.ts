@@ -1,4 +1,4 @@
-/** What is asked of a mesh itself. */
+/** Box, pieces, cavities and inside of a mesh. */
 import type { Shape } from "./protocol";
 
 export function boundsOf(shapes: Shape[]): { low: number[]; high: number[] } {

@@ -168,10 +168,10 @@ export class MendTab {
     const report = reportOf(done) as { found: { sound: boolean }; output: { triangles: number; keptTriangles: number; resultToInputMm: number;
       inputToResultMm: number; filled: Place[]; inner: Place[]; thin: Place[]; cutHandles: Place[]; filledHandles: Place[] } };
     const made = report.output, [result] = outputsOf(done);
-    const count = (places: Place[], one: string, many: string): string[] => (places.length === 0 ? [] : [`${places.length} ${places.length === 1 ? one : many}`]);
-    const changes = [...count(made.filled, "hole closed", "holes closed"), ...count(made.inner, "inner part dropped", "inner parts dropped"),
-      ...count(made.thin, "thin part dropped", "thin parts dropped"), ...count(made.cutHandles, "handle cut", "handles cut"),
-      ...count(made.filledHandles, "handle filled", "handles filled")];
+    const counted = (places: Place[], one: string, many: string): string[] => (places.length === 0 ? [] : [`${places.length} ${places.length === 1 ? one : many}`]);
+    const changes = [...counted(made.filled, "hole closed", "holes closed"), ...counted(made.inner, "inner part dropped", "inner parts dropped"),
+      ...counted(made.thin, "thin part dropped", "thin parts dropped"), ...counted(made.cutHandles, "handle cut", "handles cut"),
+      ...counted(made.filledHandles, "handle filled", "handles filled")];
     const most = Math.max(made.resultToInputMm, made.inputToResultMm);
     await task.show(report.found.sound ? `${file.path} is sound: it stays as it is`
       : `A sound solid of ${formatCount(made.triangles)} triangles, ${formatCount(made.keptTriangles)} of them as they were`
@@ -207,7 +207,7 @@ export class SimplifyTab {
   }
 }
 
-/** Of a distance inward, none, and outward; the inside of a surface is red. */
+/** Colours of places inside, at and outside the other mesh. Red is taken: the back of a triangle is red. */
 const kInward: Color = [33, 102, 172], kNone: Color = [240, 240, 240], kOutward: Color = [230, 97, 1];
 const mixed = (share: number): Color =>
   kNone.map((none, at) => Math.round(none + Math.abs(share) * ((share < 0 ? kInward : kOutward)[at] - none))) as Color;

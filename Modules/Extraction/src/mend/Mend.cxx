@@ -201,8 +201,8 @@ void splitFans(TriangleMesh& mesh) {
                        formatShort(maxErrorMm) + " mm, leaves");
 }
 
-/// Refuses triangles behind which the winding number is nowhere a half: elsewhere it is less, as it
-/// is harmonic.
+/// Refuses triangles that enclose nothing. The winding number is harmonic off the triangles: if it
+/// is at least a half anywhere, it is so just behind a triangle, which is tried at four places.
 void requireVolume(const MendInput& input, const detail::WindingField& field, double boundMm,
                    double maxErrorMm) {
     const double depthMm =  // what is thinner is dropped
@@ -210,8 +210,10 @@ void requireVolume(const MendInput& input, const detail::WindingField& field, do
     for (std::int64_t t = 0; t < std::ssize(input.mesh.triangles); ++t) {
         const Corners c = cornersOf(input.mesh, t);
         const Vec3 middle = (1.0 / 3) * (c[0] + c[1] + c[2]);
-        const Vec3 outward = normalized(areaVector2(c[0], c[1], c[2]));
-        if (field.at(middle - depthMm * outward) >= 0.5) return;
+        const Vec3 inward = -depthMm * normalized(areaVector2(c[0], c[1], c[2]));
+        for (const Vec3& corner : {middle, c[0], c[1], c[2]}) {
+            if (field.at(0.5 * (middle + corner) + inward) >= 0.5) return;
+        }
     }
     refuseNothing(maxErrorMm);
 }
@@ -341,28 +343,24 @@ double widestHole(const MendOptions& options, const BoundingBox& box) {
     return options.maxHoleMm.value_or(MendOptions::kHoleOfDiagonal * norm(box.size()));
 }
 
-/// The borders of an oriented 2-manifold that crosses nothing, the widest first; empty: it is none,
-/// or is closed.
+/// The borders of a mesh of open sheets without another fault, the widest first. Empty if it is
+/// none: it has a closed piece or another fault.
 std::vector<MendedPlace> bordersOfSheets(const TriangleMesh& mesh, const MendInput& input,
                                          const MendStatistics& found) {
-    if (found.borderEdges == 0 || found.degenerateTriangles > 0 || found.duplicateTriangles > 0 ||
-        found.mergedPoints > 0 || found.flippedTriangles > 0 || found.badEdges > 0 ||
-        found.badVertices > 0 || found.crossingTriangles > 0 || input.oneSidedMm) {
+    if (found.degenerateTriangles > 0 || found.duplicateTriangles > 0 || found.mergedPoints > 0 ||
+        found.flippedTriangles > 0 || found.badEdges > 0 || found.badVertices > 0 ||
+        found.crossingTriangles > 0 || input.oneSidedMm) {
         return {};
     }
-    std::vector<std::pair<VertexId, VertexId>> edges;
-    for (const Triangle& t : mesh.triangles) {
-        for (int side = 0; side < 3; ++side)
-            edges.push_back(std::minmax(t[side], t[(side + 1) % 3]));
-    }
-    std::sort(edges.begin(), edges.end());
+    const ComponentLabels pieces = labelComponents(mesh);
+    std::vector<std::uint8_t> isOpen(pieces.count);
     TriangleMesh borders{mesh.points, {}, {}};  // an edge as a triangle without area
-    for (std::size_t n = 0; n < edges.size(); ++n) {
-        const bool isTwice = (n > 0 && edges[n - 1] == edges[n]) ||
-                             (n + 1 < edges.size() && edges[n + 1] == edges[n]);
-        const auto [a, b] = edges[n];
-        if (!isTwice) borders.triangles.push_back({a, b, b});
+    for (const auto& [a, b] : input.borders) {
+        borders.triangles.push_back({a, b, b});
+        isOpen[pieces.ofVertex[a]] = 1;
     }
+    const auto isClosed = [&](const Triangle& t) { return isOpen[pieces.ofVertex[t[0]]] == 0; };
+    if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), isClosed)) return {};
     std::vector<MendedPlace> places;
     const std::vector<std::uint8_t> all(borders.triangles.size(), 1);
     for (const auto& border : detail::connectedPlaces(borders, all)) {

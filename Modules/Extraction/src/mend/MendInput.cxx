@@ -580,9 +580,11 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
     statistics.mergedPoints +=
         mergeNearBorderPoints(input, kNearBorder * statistics.maxErrorMm, movedMm);
     statistics.movedMm += movedMm;  // a point may have moved before
-    for (const std::int64_t uses : edgeUses(input)) {
-        if (uses == 1) ++statistics.borderEdges;
+    const auto uses = edgeUses(input);
+    for (std::size_t e = 0; e < uses.size(); ++e) {
+        if (uses[e] == 1) input.borders.push_back({input.edges[e].a, input.edges[e].b});
     }
+    statistics.borderEdges = std::ssize(input.borders);
     std::vector<std::uint8_t> isTurned =
         makeSheetsFaceOneWay(input, trianglesAtEdges(input)).isTurned;
     addCaps(input);

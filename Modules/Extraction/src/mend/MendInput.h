@@ -32,7 +32,8 @@ struct MendInput {
     std::vector<std::uint32_t> capOf;  ///< of each triangle from firstCap() on, its cap
     std::vector<std::array<std::uint32_t, 3>> edgeOf;  ///< of a triangle, from corner i to i + 1
     std::vector<Edge> edges;
-    std::vector<std::uint32_t> badVertices;  ///< that join triangles by themselves alone
+    std::vector<std::array<std::uint32_t, 2>> borders;  ///< edges in one triangle, caps aside
+    std::vector<std::uint32_t> badVertices;             ///< that join triangles by themselves alone
     std::vector<std::array<std::uint32_t, 2>> crossingPairs;  ///< of triangles
     std::vector<std::uint32_t> undecided;  ///< triangles that lie near too many to be tested
 
