@@ -114,8 +114,8 @@ void printOutput(std::ostream& out, const MendRun& run) {
     if (run.isCopy) out << "  the input's bytes\n";
     printAround(out, run);
     if (run.isUnchanged()) return;
-    out << "  " << formatCount(run.statistics.keptTriangles)
-        << " triangles of the input kept as they are\n";
+    out << "  " << formatCount(run.statistics.keptTriangles) << " triangles of the input kept"
+        << (run.move.movedVertices > 0 ? ", then moved" : " as they are") << '\n';
     for (const std::string& places : mendPlaceTexts(run.statistics)) out << "  " << places << '\n';
     out << "  " << mendDistanceText(run.statistics, run.shiftMm()) << '\n';
     for (const std::string& name : run.keptArrays) {

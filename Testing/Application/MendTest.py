@@ -189,6 +189,8 @@ class Around(MendTest):
         fixed = self.path("inner.off").read_bytes()
         report = self.mend("outer.off", "--around", "inner.off", "--gap", 2, "-o", "around.off")
         self.assertEqual((report["found"]["sound"], report["output"]["copied"]), (True, False))
+        self.assertIn("1,280 triangles of the input kept, then moved",
+                      self.run_mend("outer.off", "--around", "inner.off", "--gap", 2, "--dry-run").stdout)
         around = report["output"]["around"]
         self.assertEqual((around["file"], self.path("inner.off").read_bytes()), ("inner.off", fixed))
         self.assertTrue(2 <= around["gapMm"] < 2.1, around)

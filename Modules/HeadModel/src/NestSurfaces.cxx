@@ -64,7 +64,7 @@ std::vector<Finding> findHopeless(const std::vector<TriangleMesh>& surfaces) {
             report.relation == NestingRelation::Apart) {
             findings.push_back({"surfaces " + std::to_string(n) + " and " + std::to_string(n + 1) +
                                     ": they are " + std::string(toString(report.relation)) +
-                                    ", the second must lie around the first",
+                                    ", not nested",
                                 report.gap.nearest.pointA});
         }
     }
