@@ -16,6 +16,7 @@
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "mend/CrossingCuts.h"
 #include "mend/HandleCuts.h"
 #include "mend/MendAssembly.h"
 #include "mend/MendDistances.h"
@@ -280,9 +281,12 @@ void countOrigins(const MendAssembly& assembly, const MendInput& input,
     for (std::size_t t = 0; t < assembly.source.size(); ++t) {
         const std::int64_t origin = assembly.origin[t];
         if (origin < 0 || origin >= input.firstCap()) continue;
-        if (assembly.source[t] == MendSource::Kept) ++statistics.keptTriangles;
-        if (assembly.source[t] == MendSource::Cut && origin != last) ++statistics.cutTriangles;
-        last = origin;
+        const std::int64_t whole = input.partOf.empty() ? -1 : input.partOf[origin];
+        const bool isCut = assembly.source[t] == MendSource::Cut || whole >= 0;
+        const std::int64_t given = whole >= 0 ? whole : origin;
+        if (!isCut) ++statistics.keptTriangles;
+        if (isCut && given != last) ++statistics.cutTriangles;
+        last = given;
     }
 }
 
@@ -456,7 +460,10 @@ Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
         }
     }
     try {
-        result.mesh = mendPrepared(mesh, input, box, options, result.statistics);
+        MendStatistics found = result.statistics;
+        const auto cut = detail::cutCrossings(input, found);
+        if (cut) result.statistics = found;
+        result.mesh = mendPrepared(mesh, cut ? *cut : input, box, options, result.statistics);
     } catch (const InvalidInput& refusal) {
         throw MendRefusal(refusal.what(), std::move(result.statistics));
     }

@@ -106,6 +106,10 @@ struct FarPiece {
     std::vector<Corners> parts;
 };
 
+bool isWider(const MendedPlace& a, const MendedPlace& b) {
+    return a.spanMm > b.spanMm;
+}
+
 /// Places of what hangs together by points of the input.
 std::vector<MendedPlace> placesOf(const MendInput& input, const std::vector<FarPiece>& pieces,
                                   bool areInner) {
@@ -124,9 +128,7 @@ std::vector<MendedPlace> placesOf(const MendInput& input, const std::vector<FarP
     }
     std::vector<MendedPlace> places;
     for (const auto& [set, reach] : reaches) places.push_back(reach.place());
-    std::stable_sort(places.begin(), places.end(), [](const MendedPlace& a, const MendedPlace& b) {
-        return a.spanMm > b.spanMm;
-    });
+    std::stable_sort(places.begin(), places.end(), isWider);
     return places;
 }
 
@@ -151,7 +153,7 @@ std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> connectedPlaces(
         places.emplace_back(reach.place(), std::move(triangles));
     }
     std::stable_sort(places.begin(), places.end(),
-                     [](const auto& a, const auto& b) { return a.first.spanMm > b.first.spanMm; });
+                     [](const auto& a, const auto& b) { return isWider(a.first, b.first); });
     return places;
 }
 
@@ -246,6 +248,8 @@ void proveDistances(const MendInput& input, const AabbTree& tree, const WindingF
     }
     statistics.inputToResultMm += upperMm;
     statistics.inner = placesOf(input, far, true);
+    statistics.inner.insert(statistics.inner.end(), input.dropped.begin(), input.dropped.end());
+    std::stable_sort(statistics.inner.begin(), statistics.inner.end(), isWider);
     statistics.thin = placesOf(input, far, false);
 }
 

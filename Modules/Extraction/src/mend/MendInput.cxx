@@ -569,6 +569,12 @@ void requireMendable(const TriangleMesh& mesh) {
     }
 }
 
+void judgeSurface(MendInput& input, MendStatistics& statistics) {
+    judgeEdges(input, statistics);
+    input.badVertices = findBadVertices(input);
+    statistics.badVertices = std::ssize(input.badVertices);
+}
+
 MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
     MendInput input;
     input.mesh.points = mesh.points;
@@ -597,14 +603,12 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
     findCrossings(input);
     if (dropCrossingCaps(input)) findEdges(input);
     countCrossing(input, statistics);
-    judgeEdges(input, statistics);
+    judgeSurface(input, statistics);
     const bool isOneSided = std::all_of(sheets.oddPoint.begin(), sheets.oddPoint.end(),
                                         [](const auto& point) { return point.has_value(); });
     if (isOneSided && statistics.borderEdges > 0) {
         input.oneSidedMm = input.mesh.points[*sheets.oddPoint[0]];
     }
-    input.badVertices = findBadVertices(input);
-    statistics.badVertices = std::ssize(input.badVertices);
     return input;
 }
 

@@ -40,6 +40,11 @@ struct MendInput {
     /// Where an open surface can't face one way, if all sheets are such.
     std::optional<Vec3> oneSidedMm;
 
+    /// Where crossing triangles were cut: of each triangle the one before, if it is a part of that;
+    /// else -1. Empty: none were.
+    std::vector<std::int64_t> partOf;
+    std::vector<MendedPlace> dropped;  ///< then: what lies within the solid, the widest first
+
     /// Triangles of walls that both went, and one of the others with a corner there.
     std::vector<LostPair> lostPairs;
 
@@ -61,6 +66,10 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics);
 
 /// The triangles by 32-bit numbers. \pre requireMendable()
 std::vector<TriangleView::Triangle> inShort(const TriangleMesh& mesh);
+
+/// Finds edges and vertices that are not sound. \param statistics  gets how many
+/// \pre findEdges()
+void judgeSurface(MendInput& input, MendStatistics& statistics);
 
 /// Finds the edges of triangles, each with the number of its triangles in `edgeOf` order.
 void findEdges(MendInput& input);

@@ -68,14 +68,13 @@ void WindingField::build(const HalvedLeaves& subtree) {
     build(subtree.right());
 }
 
-double WindingField::at(const Vec3& p, std::int64_t without) const {
-    constexpr double kFar = 2.5;  // radii
+double WindingField::at(const Vec3& p, std::int64_t without, double far) const {
     double sum = 0;
     for (std::int64_t n = 0; n < std::ssize(nodes_);) {
         const Node& node = nodes_[n];
         const Vec3 away = node.middle - p;
         const double squared = squaredNorm(away);
-        if (squared > kFar * kFar * node.radius * node.radius) {
+        if (squared > far * far * node.radius * node.radius) {
             sum += dot(away, node.dipole) / (squared * std::sqrt(squared) * 4 * std::numbers::pi);
             n = node.behind;
         } else if (node.behind > n + 1) {

@@ -20,7 +20,8 @@ public:
     WindingField(const TriangleMesh& mesh, const AabbTree& tree);
 
     /// \param without  a triangle that does not count; -1: all do
-    double at(const Vec3& p, std::int64_t without = -1) const;
+    /// \param far  triangles count together where they are as many radii of their box away
+    double at(const Vec3& p, std::int64_t without = -1, double far = 2.5) const;
 
 private:
     static constexpr std::int64_t kLeafTriangles = 4;  ///< as the tree has them
