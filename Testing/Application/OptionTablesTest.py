@@ -90,6 +90,12 @@ class OptionTables(ApplicationTest):
             offered = re.findall(r'<option value="([^"]+)"', page.partition(f'<select id="{select}">')[2].partition("</select>")[0])
             self.assertEqual(offered, words)
 
+    def test_the_browser_page_takes_defaults_that_are_there(self):
+        wanted = re.findall(r"{{DEFAULT (\w+) (\w+)", (SOURCE / "Applications/web/page/src/page.html").read_text())
+        self.assertGreater(len(wanted), 5)
+        for program, option in wanted:
+            self.assertRegex(TYPES.read_text(), rf"interface {program}Rows[^}}]*default: [^\n]*\)\. \*/ {option}\?")
+
     def test_pages_name_no_option_that_a_program_has_not(self):
         for program in PROGRAMS:
             if program == "adaptiso-bids":  # it names those of the programs that it runs
