@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>

@@ -2,11 +2,9 @@
 
 #include <pybind11/stl.h>
 
-#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "Arrays.h"
 #include "Calls.h"

@@ -4,10 +4,8 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "Arrays.h"
 #include "Calls.h"
