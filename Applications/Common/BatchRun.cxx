@@ -4,7 +4,6 @@
 #include <iostream>
 #include <map>
 #include <optional>
-#include <string_view>
 
 #include "Common/Batch.h"
 #include "Common/BatchSummary.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "Common/Naming.h"
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "adaptiso/Core/Errors.h"
@@ -155,6 +156,15 @@ std::optional<CoordinateFrame> statedFrame(const std::vector<CoordinateFrame>& s
                                            std::size_t n) {
     if (stated.empty()) return std::nullopt;
     return stated.size() == 1 ? stated.front() : stated.at(n);
+}
+
+std::string frameText(const std::optional<CoordinateFrame>& frame) {
+    return frame ? std::string(toString(*frame)) : "frame not said";
+}
+
+std::string fileText(const std::filesystem::path& file, const MeshFormat& format,
+                     const std::optional<CoordinateFrame>& frame) {
+    return baseName(file) + " (" + std::string(format.name) + ", " + frameText(frame) + ")";
 }
 
 bool areOfOneFormat(const NamedMesh& a, const NamedMesh& b) {

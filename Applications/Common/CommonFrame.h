@@ -48,6 +48,12 @@ inline constexpr const char* kUnsaidFrame = "the file's own frame, which it does
 inline constexpr const char* kStateIt =
     "; state it by --input-coordinates ras, lps, tkras or voxel";
 
+/// "RAS mm", "frame not said"
+std::string frameText(const std::optional<CoordinateFrame>& frame);
+/// "bone.stl (STL (binary), RAS mm)"
+std::string fileText(const std::filesystem::path& file, const MeshFormat& format,
+                     const std::optional<CoordinateFrame>& frame);
+
 /// The frame that several surfaces have been brought to.
 struct CommonFrame {
     /// Ras; or TkRas where nothing says where its volume lies in the scanner.

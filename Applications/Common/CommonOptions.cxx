@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <iterator>
 #include <latch>
-#include <memory>
 #include <system_error>
 #include <thread>
 #include <vector>

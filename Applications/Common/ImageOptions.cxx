@@ -1,7 +1,6 @@
 #include "Common/ImageOptions.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 
 #include "Common/CommonFrame.h"
 #include "Common/OptionValues.h"

@@ -1,6 +1,5 @@
 #include "Common/Naming.h"
 
-#include <algorithm>
 #include <array>
 #include <string_view>
 

@@ -132,12 +132,22 @@ CLI::Option* OptionGroup::values(const std::string& name, const std::string& val
         ->group(heading_);
 }
 
-CLI::Option* OptionGroup::row(const OptionFacts& facts, OptionKind kind,
-                              const std::function<void(const OptionValue&)>& take) const {
+std::map<std::string_view, DeclaredRow>& declaredRows() {
+    static std::map<std::string_view, DeclaredRow> rows;
+    return rows;
+}
+
+void OptionGroup::row(const DeclaredRow& declared,
+                      const std::function<void(const OptionValue&)>& take) const {
+    const OptionFacts& facts = *declared.facts;
+    const OptionKind kind = declared.kind;
+    declaredRows()[facts.name] = declared;
     const std::string name = "--" + std::string(facts.name), help = helpText(facts, kind);
-    if (kind == OptionKind::Flag)
-        return flag(
+    if (kind == OptionKind::Flag) {
+        flag(
             name, [take] { take(true); }, help);
+        return;
+    }
     const std::vector<std::string> words(facts.words.begin(), facts.words.end());
     const auto read = [=](const std::string& text) {
         if (kind == OptionKind::Number) {
@@ -152,8 +162,7 @@ CLI::Option* OptionGroup::row(const OptionFacts& facts, OptionKind kind,
             throw UsageError(name + " " + shown(text) + ": must be " + std::string(facts.textRule));
         }
     };
-    return value(name, words.empty() ? std::string(facts.valueName) : choiceName(words), read,
-                 help);
+    value(name, words.empty() ? std::string(facts.valueName) : choiceName(words), read, help);
 }
 
 void OptionGroup::refused(const std::string& name, const std::string& reason) const {

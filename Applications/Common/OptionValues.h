@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,6 +40,15 @@ std::size_t parseChoice(const std::string& option, const std::string& text,
 /// "adaptive|boxes|mc", as --help names the value of an option that takes one of these words
 std::string choiceName(const std::vector<std::string>& words);
 
+/// A row as declared.
+struct DeclaredRow {
+    const OptionFacts* facts;
+    OptionKind kind;
+    OptionValue standard;
+};
+/// The rows that this process has declared, by name.
+std::map<std::string_view, DeclaredRow>& declaredRows();
+
 /// Options under one heading of --help, each declared in one line: names, the value's name in
 /// --help, target, help text. Values are checked as they are read. A name without dashes ("INPUT")
 /// is an argument.
@@ -71,13 +81,10 @@ public:
               const std::vector<std::string_view>& only = {}) const {
         for (const Option<Owner>& each : rows) {
             if (!only.empty() && std::ranges::find(only, each.facts.name) == only.end()) continue;
-            row(each.facts, each.kind,
+            row({&each.facts, each.kind, each.valueOf(owner)},
                 [&owner, &each](const OptionValue& value) { each.put(owner, value); });
         }
     }
-    /// The option of one row. \param take  gets its value, checked
-    CLI::Option* row(const OptionFacts& facts, OptionKind kind,
-                     const std::function<void(const OptionValue&)>& take) const;
 
     /// An option, with a value or without, that is refused with a reason.
     void refused(const std::string& name, const std::string& reason) const;
@@ -139,6 +146,10 @@ public:
     }
 
 private:
+    /// \param take  gets the value, checked
+    void row(const DeclaredRow& declared,
+             const std::function<void(const OptionValue&)>& take) const;
+
     CLI::App& app_;
     std::string heading_;
 };

@@ -19,11 +19,13 @@
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/Log.h"
+#include "Common/OptionValues.h"
 #include "Common/UsageWords.h"
 #include "Common/Verdict.h"
 #include "adaptiso/Core/Habits.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Files/AtomicOutput.h"
+#include "adaptiso/Json/OptionsJson.h"
 
 namespace adaptiso {
 namespace {
@@ -45,6 +47,9 @@ Json namesOf(const std::set<CLI::Option*>& options) {
 Json optionJson(const CLI::Option& option) {
     const bool takesValue = option.get_items_expected_max() > 0;
     const Json names = namesOf(option);
+    const auto& lnames = option.get_lnames();
+    const auto row = lnames.empty() ? declaredRows().end() : declaredRows().find(lnames.front());
+    const bool isRow = row != declaredRows().end();
     return {{"names", names},
             {"value", names.empty() ? Json(option.get_name(true))
                       : takesValue  ? Json(option.get_type_name())
@@ -54,7 +59,9 @@ Json optionJson(const CLI::Option& option) {
             {"group", option.get_group()},
             {"description", option.get_description()},
             {"needs", namesOf(option.get_needs())},
-            {"excludes", namesOf(option.get_excludes())}};
+            {"excludes", namesOf(option.get_excludes())},
+            {"row", isRow ? factsJson(*row->second.facts, row->second.kind, row->second.standard)
+                          : Json(nullptr)}};
 }
 
 /// All that --help says, for machines (`adaptiso-mesh --help-json`): manual pages and completions
@@ -63,7 +70,9 @@ Json optionJson(const CLI::Option& option) {
 ///
 /// One JSON object: `schema` ("adaptiso-options/1"), `program`, `version`, `description`, `footer`
 /// and `options`, a list in the order of --help of `names` (empty: positional), `value` (as --help
-/// names it; empty: a flag), `repeats`, `required`, `group`, `description`, `needs` and `excludes`.
+/// names it; empty: a flag), `repeats`, `required`, `group`, `description`, `needs`, `excludes` and
+/// `row` (factsJson(), of a row of the library's tables; else null), from which the types of the
+/// npm package are made.
 std::string optionsJson(const CLI::App& app) {
     Json options = Json::array();
     for (const CLI::Option* option : app.get_options()) {

@@ -6,7 +6,6 @@
 #include <openssl/evp.h>
 #endif
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>

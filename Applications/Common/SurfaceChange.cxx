@@ -8,8 +8,10 @@
 #include "Common/CommonFrame.h"
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
+#include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Phrases.h"
+#include "adaptiso/SurfacePipeline/StoredMesh.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso {
@@ -37,52 +39,8 @@ FrameChange changeOf(const MeshFile& input, std::optional<CoordinateFrame> wante
     return change;
 }
 
-}  // namespace
-
-void summarize(const TriangleMesh& mesh, SurfaceSummary& summary) {
-    summary.triangles = std::ssize(mesh.triangles);
-    summary.vertices = std::ssize(mesh.points);
-    summary.areaMm2 = surfaceArea(mesh);
-}
-
-Json surfaceJson(const SurfaceSummary& surface) {
-    const TopologyReport& topology = surface.topology;
-    return {{"file", baseName(surface.file)},
-            {"format", surface.format->name},
-            {"coordinates", frameJson(surface.frame)},
-            {"triangles", surface.triangles},
-            {"vertices", surface.vertices},
-            {"components", std::ssize(topology.components)},
-            {"genus", orNull(topology.genus())},
-            {"closed", topology.isClosed()},
-            {"areaMm2", number(surface.areaMm2)}};
-}
-
-std::string frameText(const std::optional<CoordinateFrame>& frame) {
-    return frame ? std::string(toString(*frame)) : "frame not said";
-}
-
-double FrameChange::roundingMm(const TriangleMesh& mesh) const {
-    double largest = 0;
-    if (!move) return largest;
-    const AffineTransform back = inverse(*move);
-    for (const Vec3& p : mesh.points) largest = std::max(largest, norm(back((*move)(p)) - p));
-    return largest;
-}
-
-FrameChange changeFrame(const MeshFile& input, const std::filesystem::path& file,
-                        std::optional<CoordinateFrame> wanted,
-                        const std::filesystem::path& output) {
-    const MeshFormat& format = meshFormatOf(output);
-    const FrameChange change =
-        naming(baseName(file), [&] { return changeOf(input, wanted, format); });
-    if (change.frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
-        throw UsageError(output.string() + ": " + std::string(format.name) +
-                         " holds points in mm only, not voxel indices");
-    }
-    return change;
-}
-
+/// The input's arrays that the output's format holds; warnings name the others.
+/// \param from, to  names of the files
 std::vector<const PointArray*> heldArrays(const MeshFile& input, const MeshFormat& format,
                                           const std::string& from, const std::string& to,
                                           std::vector<Warning>& warnings) {
@@ -114,6 +72,8 @@ std::vector<const PointArray*> heldArrays(const MeshFile& input, const MeshForma
     return held;
 }
 
+/// Values at the points of the input as the result has them. Numbers and colours are mixed; whole
+/// numbers, which may be labels, are those of the nearest corner.
 PointArray transferred(const PointArray& array, const PointTransfer& transfer) {
     const auto columns = static_cast<std::size_t>(array.components);
     PointArray taken{array.name, {}, array.components};
@@ -131,6 +91,147 @@ PointArray transferred(const PointArray& array, const PointTransfer& transfer) {
             transfer.nearest(std::get<std::vector<std::int64_t>>(array.values).data(), columns);
     }
     return taken;
+}
+
+}  // namespace
+
+void summarize(const TriangleMesh& mesh, SurfaceSummary& summary) {
+    summary.triangles = std::ssize(mesh.triangles);
+    summary.vertices = std::ssize(mesh.points);
+    summary.areaMm2 = surfaceArea(mesh);
+}
+
+const Figures<SurfaceSummary>& summaryFigures() {
+    using Of = const SurfaceSummary&;
+    static const Figures<SurfaceSummary> kRows{
+        {"file", "name; empty: none is written", [](Of of) { return Json(baseName(of.file)); },
+         "File", Shown::Plain},
+        {"format", "`\"PLY (binary)\"`, ...", [](Of of) { return Json(of.format->name); }},
+        {"coordinates",
+         "the file's frame: `\"ras\"`, `\"lps\"`, `\"tkras\"`, `\"voxel\"`; `null`: it does not "
+         "say",
+         [](Of of) { return frameJson(of.frame); }},
+        {"triangles", "number of triangles", [](Of of) { return Json(of.triangles); }, "Triangles",
+         Shown::Count},
+        {"vertices", "number of vertices", [](Of of) { return Json(of.vertices); }, "Vertices",
+         Shown::Count},
+        {"components", "number of pieces",
+         [](Of of) { return Json(std::ssize(of.topology.components)); }, "Pieces", Shown::Count},
+        {"genus", "handles of all pieces; `null` unless closed, 2-manifold and oriented",
+         [](Of of) { return orNull(of.topology.genus()); }, "Genus", Shown::Count},
+        {"closed", "no open border", [](Of of) { return Json(of.topology.isClosed()); }},
+        {"areaMm2", "area", [](Of of) { return number(of.areaMm2); }, "Area, mm²", Shown::Measure}};
+    return kRows;
+}
+
+double FrameChange::roundingMm(const TriangleMesh& mesh) const {
+    double largest = 0;
+    if (!move) return largest;
+    const AffineTransform back = inverse(*move);
+    for (const Vec3& p : mesh.points) largest = std::max(largest, norm(back((*move)(p)) - p));
+    return largest;
+}
+
+FrameChange changeFrame(const MeshFile& input, const std::filesystem::path& file,
+                        std::optional<CoordinateFrame> wanted,
+                        const std::filesystem::path& output) {
+    const MeshFormat& format = meshFormatOf(output);
+    const FrameChange change =
+        naming(baseName(file), [&] { return changeOf(input, wanted, format); });
+    if (change.frame == CoordinateFrame::Voxel && !format.holdsVoxelFrame) {
+        throw UsageError(output.string() + ": " + std::string(format.name) +
+                         " holds points in mm only, not voxel indices");
+    }
+    return change;
+}
+
+MeshFile SurfaceChangeRun::readInput(const std::vector<CoordinateFrame>& stated,
+                                     const std::string& purpose) {
+    MeshFile file = stage("read", [&] {
+        return readMesh(input.file,
+                        {.keepsPointArrays = true, .inputCoordinates = statedFrame(stated, 0)});
+    });
+    addWarnings(warnings, file.warnings, baseName(input.file));
+    input.format = file.format;
+    input.frame = file.frame;
+    summarize(file.mesh, input);
+    if (input.areaMm2 > 0) return file;
+    throw InvalidInput(input.file.string() +
+                       ": its triangles have no area, so there is nothing to " + purpose);
+}
+
+void SurfaceChangeRun::warnOfSize(std::optional<double> maxErrorMm, const TriangleMesh& mesh) {
+    if (!maxErrorMm) return;
+    const auto warning = boundOverSize("--max-error", *maxErrorMm, norm(boundingBox(mesh).size()),
+                                       baseName(input.file));
+    if (warning) warnings.push_back(*warning);
+}
+
+void SurfaceChangeRun::scaleOutput(const PrintScale& asked, const TriangleMesh& result,
+                                   FrameChange& change) {
+    output.scale =
+        chooseScale(asked, result, change.move.value_or(AffineTransform{}), baseName(output.file));
+    change.scale(output.scale);
+    if (change.isSaid) output.frame = change.frame;
+}
+
+std::vector<PointArray> SurfaceChangeRun::takeValues(const MeshFile& file,
+                                                     const TriangleMesh& result,
+                                                     std::optional<PointTransfer>& transfer) {
+    std::vector<PointArray> taken;
+    for (const PointArray* const array :
+         heldArrays(file, *output.format, baseName(input.file), baseName(output.file), warnings)) {
+        if (!transfer) transfer.emplace(file.mesh, result);
+        taken.push_back(transferred(*array, *transfer));
+        keptArrays.push_back(array->name);
+    }
+    return taken;
+}
+
+MeshFile SurfaceChangeRun::writeSurface(TriangleMesh result, std::vector<PointArray> values,
+                                        const MeshFile& file, const FrameChange& change,
+                                        const std::filesystem::path& ownFolder) {
+    roundingMm =
+        settleRounding(result, output.format->precision, change.move.value_or(AffineTransform{}))
+            .roundingMm;
+    MeshWriteOptions write;
+    write.frame = change.frame;
+    write.volume = file.volume;
+    write.pointArrays = std::move(values);
+    write.isInFrame = true;
+    write.saysFrame = change.isSaid;
+    AtomicOutput& written = addOutput(output.file, ownFolder);
+    written.write([&](const auto& path) { writeMesh(change.apply(result), path, write); });
+    bytes = std::filesystem::file_size(written.temporary());
+    return readMesh(written.temporary());
+}
+
+void SurfaceChangeRun::requireDigits(double maxErrorMm) const {
+    const auto fault = roundingFault(roundingMm, maxErrorMm, *output.format);
+    if (fault) throw InvalidInput(baseName(output.file) + ": " + *fault);
+}
+
+void SurfaceChangeRun::warnOfRounding(double reachedMm, double maxErrorMm) {
+    const auto warning = roundingWarning(baseName(output.file), reachedMm,
+                                         maxErrorMm * output.scale, roundingMm, *output.format);
+    if (warning) warnings.push_back(*warning);
+}
+
+int SurfaceChangeRun::finish(bool isWritten, const std::function<std::string()>& makeJson,
+                             const std::function<void(std::ostream&)>& printText) {
+    if (isWritten) next = "adaptiso-check " + shellQuoted(output.file.string());
+    deliver(makeJson, printText);
+    return end(isWritten ? output.file.string() + " is written" : "no surface is written");
+}
+
+Json verificationJson(const std::optional<Verification>& verification) {
+    if (!verification) return nullptr;
+    return {{"samples", verification->samples}, {"maxMm", number(verification->maxMm)}};
+}
+
+TriangleMesh withArea(TriangleMesh mesh) {
+    std::erase_if(mesh.triangles, [&](const Triangle& t) { return isDegenerate(mesh, t); });
+    return mesh;
 }
 
 }  // namespace adaptiso

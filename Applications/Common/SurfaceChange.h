@@ -10,13 +10,16 @@
 
 #include "Common/Json.h"
 #include "Common/PrintScale.h"
+#include "Common/ProgramRun.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/PointTransfer.h"
+#include "adaptiso/Json/Figures.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/SurfacePipeline/Verification.h"
 
 namespace adaptiso {
 
@@ -34,11 +37,8 @@ struct SurfaceSummary {
 /// Sets the numbers and the area.
 void summarize(const TriangleMesh& mesh, SurfaceSummary& summary);
 
-/// `input` and `output` of a report.
-Json surfaceJson(const SurfaceSummary& surface);
-
-/// "RAS mm", "frame not said"
-std::string frameText(const std::optional<CoordinateFrame>& frame);
+/// `input` and `output` of a report, and lines of the page's table.
+const Figures<SurfaceSummary>& summaryFigures();
 
 /// How the points of a file go to those of another.
 struct FrameChange {
@@ -70,14 +70,52 @@ struct FrameChange {
 FrameChange changeFrame(const MeshFile& input, const std::filesystem::path& file,
                         std::optional<CoordinateFrame> wanted, const std::filesystem::path& output);
 
-/// The input's arrays that the output's format holds; warnings name the others.
-/// \param from, to  names of the files
-std::vector<const PointArray*> heldArrays(const MeshFile& input, const MeshFormat& format,
-                                          const std::string& from, const std::string& to,
-                                          std::vector<Warning>& warnings);
+/// One run of a program that reads a surface and writes it changed.
+struct SurfaceChangeRun : ProgramRun {
+    using ProgramRun::ProgramRun;
 
-/// Values at the points of the input as the result has them. Numbers and colours are mixed; whole
-/// numbers, which may be labels, are those of the nearest corner.
-PointArray transferred(const PointArray& array, const PointTransfer& transfer);
+    SurfaceSummary input{};
+    SurfaceSummary output{};                     ///< the result; triangles 0 if there is none
+    double roundingMm = 0;                       ///< largest move of a point by the output's digits
+    std::optional<Verification> verification{};  ///< of the surface as written
+    std::uintmax_t bytes = 0;                    ///< of the output
+    std::vector<std::string> keptArrays{};       ///< values at points in the surface's own file
+
+    /// Reads `input.file` as stage "read", and summarizes it.
+    /// \param stated  as statedFrame() takes it \param purpose  for the message: "simplify"
+    /// \throws FileError, InvalidInput  it can't be read, or has no area
+    MeshFile readInput(const std::vector<CoordinateFrame>& stated, const std::string& purpose);
+
+    /// Warns of a --max-error that is large for the surface's size.
+    void warnOfSize(std::optional<double> maxErrorMm, const TriangleMesh& mesh);
+
+    /// Chooses the output's scale, and sets its frame.
+    void scaleOutput(const PrintScale& asked, const TriangleMesh& result, FrameChange& change);
+
+    /// The input's values at points that the output's format holds, taken to the result.
+    /// \param transfer  is made where there are any
+    std::vector<PointArray> takeValues(const MeshFile& file, const TriangleMesh& result,
+                                       std::optional<PointTransfer>& transfer);
+
+    /// Moves what the output's digits would harm, measures their rounding, and writes the surface
+    /// under its temporary name. \return  as it can be read
+    MeshFile writeSurface(TriangleMesh result, std::vector<PointArray> values, const MeshFile& file,
+                          const FrameChange& change, const std::filesystem::path& ownFolder = {});
+
+    /// \throws InvalidInput  the output's digits alone are beyond the bound
+    void requireDigits(double maxErrorMm) const;
+    /// Warns where they take `reachedMm` noticeably beyond the bound.
+    void warnOfRounding(double reachedMm, double maxErrorMm);
+
+    /// Everything from the reports on. \return the exit code
+    int finish(bool isWritten, const std::function<std::string()>& makeJson,
+               const std::function<void(std::ostream&)>& printText);
+};
+
+/// `verification` of a report.
+Json verificationJson(const std::optional<Verification>& verification);
+
+/// The mesh without the triangles that have no area, of which nothing is promised.
+TriangleMesh withArea(TriangleMesh mesh);
 
 }  // namespace adaptiso

@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iostream>
 #include <new>
-#include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>

@@ -401,7 +401,7 @@ std::string mendingCommand(const CheckRun& run) {
         const NestingRelation relation = pair.report.relation;
         if (relation != NestingRelation::Nested && relation != NestingRelation::Crossing) continue;
         if (std::ranges::none_of(pair.checks, &Check::breaksProfile)) continue;
-        const double gapMm = run.options.minGapMm.value_or(CheckRules::kDefaultMinGapMm);
+        const double gapMm = run.options.minGapMm.value_or(CheckRules::kLeastGapMm);
         return mendingCommand(run.surfaces[pair.outer].file,
                               " --around " + shellQuoted(run.surfaces[pair.inner].file.string()) +
                                   " --gap " + formatNumber(gapMm));

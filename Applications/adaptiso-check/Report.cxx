@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <iomanip>
 #include <limits>
 #include <ostream>
@@ -79,15 +78,10 @@ Json optionsJson(const CheckOptions& options) {
 }
 
 std::string_view word(const Check& check) {
-    switch (check.outcome) {
-        case Outcome::Passed:
-            return "ok";
-        case Outcome::Failed:
-            return check.isRequired ? "FAILED" : "noted";
-        case Outcome::Undecided:
-            return "-";
-    }
-    return "";
+    return check.outcome == Outcome::Passed      ? "ok"
+           : check.outcome == Outcome::Undecided ? "-"
+           : check.isRequired                    ? "FAILED"
+                                                 : "noted";
 }
 
 bool isForPrinter(const CheckRun& run) {
@@ -129,10 +123,6 @@ void printVerdict(std::ostream& out, const std::vector<Check>& checks, const Che
         }
     }
     out << '\n';
-}
-
-std::string frameText(const std::optional<CoordinateFrame>& frame) {
-    return frame ? std::string(toString(*frame)) : "frame not said";
 }
 
 void printSpread(std::ostream& out, std::string_view name, const Spread& spread, int digits) {
@@ -182,15 +172,10 @@ void printSurface(std::ostream& out, const SurfaceRun& surface, const CheckRun& 
 }
 
 ReportOutcome outcomeOf(const Check& check) {
-    switch (check.outcome) {
-        case Outcome::Passed:
-            return ReportOutcome::Passed;
-        case Outcome::Failed:
-            return check.isRequired ? ReportOutcome::Failed : ReportOutcome::Noted;
-        case Outcome::Undecided:
-            return ReportOutcome::Undecided;
-    }
-    throw InternalError("outcomeOf: unknown outcome");
+    return check.outcome == Outcome::Passed      ? ReportOutcome::Passed
+           : check.outcome == Outcome::Undecided ? ReportOutcome::Undecided
+           : check.isRequired                    ? ReportOutcome::Failed
+                                                 : ReportOutcome::Noted;
 }
 
 void addChecks(const std::string& subject, const std::vector<Check>& checks, Report& report) {
@@ -245,19 +230,15 @@ void addVerdict(const CheckRun& run, Report& report) {
 
 void addInputs(const CheckRun& run, Report& report) {
     for (const SurfaceRun& surface : run.surfaces) {
-        std::string text = baseName(surface.file);
-        if (!surface.error.empty()) {
-            // the message begins with the whole path
-            const std::string path = surface.file.string();
-            text += ": " + (surface.error.starts_with(path + ": ")
-                                ? surface.error.substr(path.size() + 2)
-                                : std::string("could not be read"));
-        } else {
-            text += " (" + std::string(surface.format->name) + ", " +
-                    (surface.frame ? std::string(toString(*surface.frame)) : "frame not said") +
-                    ")";
-        }
-        report.inputs.push_back({"Surface", text});
+        // the message begins with the whole path
+        const std::string path = surface.file.string();
+        report.inputs.push_back(
+            {"Surface", surface.error.empty()
+                            ? fileText(surface.file, *surface.format, surface.frame)
+                            : baseName(surface.file) + ": " +
+                                  (surface.error.starts_with(path + ": ")
+                                       ? surface.error.substr(path.size() + 2)
+                                       : std::string("could not be read"))});
     }
     if (!run.volume) return;
     const std::vector<ReportFact> facts =

@@ -3,7 +3,6 @@
 #include <fstream>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "Common/ChildProcess.h"

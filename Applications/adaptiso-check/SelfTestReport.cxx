@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iomanip>
 #include <ostream>
 #include <thread>
 

@@ -153,7 +153,7 @@ void printDistances(std::ostream& out, const CompareRun& run) {
     };
     const HausdorffInterval& hausdorff = run.hausdorff.combined;
     out << "  farthest at " << place(hausdorff.pointMm) << ", from " << place(hausdorff.nearestMm)
-        << " (" << (run.frame ? toString(*run.frame) : "frame not said") << ")\n";
+        << " (" << frameText(run.frame) << ")\n";
 }
 
 void printDifferences(std::ostream& out, const CompareRun& run) {
@@ -187,14 +187,8 @@ void addVerdict(const CompareRun& run, const std::string& a, const std::string& 
 }
 
 void addInputs(const CompareRun& run, Report& report) {
-    const auto tell = [&](const char* name, const SurfaceSummary& surface) {
-        report.inputs.push_back(
-            {name, baseName(surface.file) + " (" + std::string(surface.format->name) + ", " +
-                       (surface.frame ? std::string(toString(*surface.frame)) : "frame not said") +
-                       ")"});
-    };
-    tell("A", run.a);
-    tell("B, the reference", run.b);
+    report.inputs = {{"A", fileText(run.a.file, *run.a.format, run.a.frame)},
+                     {"B, the reference", fileText(run.b.file, *run.b.format, run.b.frame)}};
     if (!run.volume) return;
     const std::vector<ReportFact> facts =
         imageFacts(baseName(run.options.volume), run.volume->format, run.volume->geometry);

@@ -1,4 +1,3 @@
-#include <string>
 
 #include "Common/CommonFrame.h"
 #include "Common/ImageOptions.h"

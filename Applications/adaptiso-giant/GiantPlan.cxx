@@ -1,6 +1,5 @@
 #include "adaptiso-giant/GiantPlan.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <map>
 #include <optional>
 #include <ostream>
 

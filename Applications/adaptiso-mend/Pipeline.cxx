@@ -9,14 +9,12 @@
 #include "Common/Json.h"
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
-#include "Common/Warnings.h"
 #include "Run.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
 #include "adaptiso/SurfacePipeline/MendJson.h"
-#include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso::mender {
 namespace {
@@ -38,22 +36,10 @@ void checkOutputs(MendRun& run) {
 }
 
 void requireMendable(const MeshFile& input, const MendRun& run) {
-    if (!(run.input.areaMm2 > 0)) {
-        throw InvalidInput(run.input.file.string() +
-                           ": its triangles have no area, so there is nothing to mend");
-    }
-    if (input.frame == CoordinateFrame::Voxel) {
-        throw InvalidInput(run.input.file.string() +
-                           ": is in voxel indices, in which a distance is no length; bring it to "
-                           "mm first (adaptiso-simplify --coordinates ras --max-error ...)");
-    }
-}
-
-void warnOfSize(const TriangleMesh& mesh, MendRun& run) {
-    if (!run.command.aim.maxErrorMm) return;
-    const auto warning = boundOverSize("--max-error", *run.command.aim.maxErrorMm,
-                                       norm(boundingBox(mesh).size()), baseName(run.input.file));
-    if (warning) run.warnings.push_back(*warning);
+    if (input.frame != CoordinateFrame::Voxel) return;
+    throw InvalidInput(run.input.file.string() +
+                       ": is in voxel indices, in which a distance is no length; bring it to "
+                       "mm first (adaptiso-simplify --coordinates ras --max-error ...)");
 }
 
 /// A message of mend() with the names of the command line's options, what was found and what helps.
@@ -147,97 +133,42 @@ void copyFile(MendRun& run) {
     run.isCopy = true;
 }
 
-std::vector<PointArray> takeValues(const MeshFile& input, const TriangleMesh& result,
-                                   MendRun& run) {
-    std::vector<PointArray> taken;
-    const auto held = heldArrays(input, *run.output.format, baseName(run.input.file),
-                                 baseName(run.output.file), run.warnings);
-    if (held.empty()) return taken;
-    const PointTransfer transfer(input.mesh, result);
-    for (const PointArray* const array : held) {
-        taken.push_back(transferred(*array, transfer));
-        run.keptArrays.push_back(array->name);
-    }
-    return taken;
-}
-
-/// Writes the surface under its temporary name. \return  as it can be read
-MeshFile writeFile(const TriangleMesh& mesh, std::vector<PointArray> values, const MeshFile& input,
-                   const FrameChange& change, MendRun& run) {
-    MeshWriteOptions write;
-    write.frame = change.frame;
-    write.volume = input.volume;
-    write.pointArrays = std::move(values);
-    write.isInFrame = true;
-    write.saysFrame = change.isSaid;
-    AtomicOutput& output = run.addOutput(run.output.file);
-    output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
-    run.bytes = fs::file_size(output.temporary());
-    return readMesh(output.temporary());
-}
-
-/// \throws InvalidInput  the output's digits alone are beyond the bound
-void requireDigits(const MendRun& run) {
-    const auto fault = roundingFault(run.roundingMm, run.statistics.maxErrorMm, *run.output.format);
-    if (fault) throw InvalidInput(baseName(run.output.file) + ": " + *fault);
-}
-
-void warnOfRounding(MendRun& run) {
-    const double bound =
-        std::max(run.resultToInputMm(), run.inputToResultMm()) - run.move.maximumMm;
-    const auto warning = roundingWarning(baseName(run.output.file), bound,
-                                         run.statistics.maxErrorMm * run.output.scale,
-                                         run.roundingMm, *run.output.format);
-    if (warning) run.warnings.push_back(*warning);
-}
-
-/// Brings distances, proved and measured in the input, to those of the file.
-void scaleDistances(double factor, MendRun& run) {
-    run.output.scale = factor;
-    for (double* const mm :
-         {&run.statistics.resultToInputMm, &run.statistics.inputToResultMm, &run.roundingMm,
-          &run.verification->maxMm, &run.gapMm, &run.move.maximumMm, &run.move.meanMm}) {
-        *mm *= factor;
-    }
-}
-
 /// Writes the result, with the values at its points, in the frame that is asked for.
 /// \param mended  its points before they were moved \param fixed  no triangles: it lies around none
 void finish(TriangleMesh result, std::vector<Vec3> mended, const TriangleMesh& fixed,
             const MeshFile& input, MendRun& run) {
     FrameChange change = changeFrame(input, run.input.file, run.command.frame, run.output.file);
-    const double factor =
-        chooseScale(run.command.scale, result, change.move.value_or(AffineTransform{}),
-                    baseName(run.output.file));
-    change.scale(factor);
-    if (change.isSaid) run.output.frame = change.frame;
+    run.scaleOutput(run.command.scale, result, change);
     if (isCopied(input, change, run)) {
         summarize(result, run.output);
         run.output.topology = run.input.topology;
         return run.stage("write", [&] { copyFile(run); });
     }
     std::swap(result.points, mended);
+    std::optional<PointTransfer> transfer;
     std::vector<PointArray> values =
-        run.stage("values", [&] { return takeValues(input, result, run); });
+        run.stage("values", [&] { return run.takeValues(input, result, transfer); });
     std::swap(result.points, mended);
     MeshFile written = run.stage("write", [&] {
         if (!run.output.format->holdsNormals) result.normals.clear();
-        TriangleMesh settled = result;
-        run.roundingMm = settleRounding(settled, run.output.format->precision,
-                                        change.move.value_or(AffineTransform{}))
-                             .roundingMm;
-        return writeFile(change.apply(settled), std::move(values), input, change, run);
+        return run.writeSurface(result, std::move(values), input, change);
     });
     run.stage("verify", [&] {
         summarize(written.mesh, run.output);
         const TriangleMesh surface = change.undo(std::move(written.mesh));
         verify({input.mesh, surface, run.shiftMm() + change.roundingMm(result)}, result, run);
-        requireDigits(run);
+        run.requireDigits(run.statistics.maxErrorMm);
         if (!fixed.triangles.empty()) verifyAround(surface, fixed, run);
     });
-    scaleDistances(factor, run);
-    warnOfRounding(run);
-    noteScale(factor, baseName(run.output.file), run.warnings);
+    // of the file, not of the input
+    for (double* const mm :
+         {&run.statistics.resultToInputMm, &run.statistics.inputToResultMm, &run.roundingMm,
+          &run.verification->maxMm, &run.gapMm, &run.move.maximumMm, &run.move.meanMm}) {
+        *mm *= run.output.scale;
+    }
+    run.warnOfRounding(std::max(run.resultToInputMm(), run.inputToResultMm()) - run.move.maximumMm,
+                       run.statistics.maxErrorMm);
+    noteScale(run.output.scale, baseName(run.output.file), run.warnings);
 }
 
 }  // namespace
@@ -246,17 +177,9 @@ int runMend(const MendCommand& command) {
     MendRun run(command);
     checkOutputs(run);
 
-    const MeshFile input = run.stage("read", [&] {
-        return readMesh(command.input,
-                        {.keepsPointArrays = true,
-                         .inputCoordinates = statedFrame(command.inputCoordinates, 0)});
-    });
-    addWarnings(run.warnings, input.warnings, baseName(command.input));
-    run.input.format = input.format;
-    run.input.frame = input.frame;
-    summarize(input.mesh, run.input);
+    const MeshFile input = run.readInput(command.inputCoordinates, "mend");
     requireMendable(input, run);
-    warnOfSize(input.mesh, run);
+    run.warnOfSize(command.aim.maxErrorMm, input.mesh);
     TriangleMesh fixed;
     if (!command.around.empty()) fixed = run.stage("read", [&] { return readFixed(input, run); });
     run.stage("check", [&] { run.input.topology = checkTopology(input.mesh); });
@@ -278,12 +201,9 @@ int runMend(const MendCommand& command) {
         finish(std::move(result), std::move(mended), fixed, input, run);
     }
     if (!run.writesSurface()) run.dropOutputs();
-    if (run.writesSurface()) {
-        run.next = "adaptiso-check " + shellQuoted(run.output.file.string());
-    }
-    run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
-    return run.end(run.writesSurface() ? run.output.file.string() + " is written"
-                                       : "no surface is written");
+    return run.finish(
+        run.writesSurface(), [&] { return jsonReport(run); },
+        [&](std::ostream& out) { printReport(out, run); });
 }
 
 }  // namespace adaptiso::mender

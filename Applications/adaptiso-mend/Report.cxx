@@ -1,10 +1,8 @@
-#include <algorithm>
 #include <ostream>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "Common/CommonOptions.h"
+#include "Common/CommonFrame.h"
 #include "Common/Json.h"
 #include "Common/ReportOutput.h"
 #include "Common/RunApp.h"
@@ -50,7 +48,7 @@ Json aroundJson(const MendRun& run) {
 Json outputJson(const MendRun& run) {
     if (!run.isMended()) return nullptr;
     const MendStatistics& done = run.statistics;
-    Json json = surfaceJson(run.output);
+    Json json = figuresJson(summaryFigures(), run.output);
     json["scale"] = number(run.output.scale);
     json["bytes"] = run.bytes;
     json["written"] = run.writesSurface();
@@ -64,11 +62,7 @@ Json outputJson(const MendRun& run) {
     json["cutTriangles"] = done.cutTriangles;
     json.update(mendPlacesJson(done));
     json["around"] = aroundJson(run);
-    json["verification"] = nullptr;
-    if (run.verification) {
-        json["verification"] = {{"samples", run.verification->samples},
-                                {"maxMm", number(run.verification->maxMm)}};
-    }
+    json["verification"] = verificationJson(run.verification);
     json["values"] = run.keptArrays;
     return json;
 }
@@ -126,7 +120,7 @@ void printOutput(std::ostream& out, const MendRun& run) {
 }  // namespace
 
 std::string jsonReport(const MendRun& run) {
-    return run.json("adaptiso-mend/1", {{"input", surfaceJson(run.input)},
+    return run.json("adaptiso-mend/1", {{"input", figuresJson(summaryFigures(), run.input)},
                                         {"found", foundJson(run)},
                                         {"options", optionsJson(run.command)},
                                         {"output", outputJson(run)},

@@ -1,40 +1,30 @@
 #pragma once
 
-#include <cstdint>
 #include <iosfwd>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "Common/ProgramRun.h"
 #include "Common/SurfaceChange.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Mend.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
-#include "adaptiso/SurfacePipeline/Verification.h"
 
 namespace adaptiso::mender {
 
 /// One run of the program, for the reports.
-struct MendRun : ProgramRun {
+struct MendRun : SurfaceChangeRun {
     explicit MendRun(const MendCommand& given)
-        : ProgramRun("adaptiso-mend", given.common, given.report, "so no surface was written"),
+        : SurfaceChangeRun("adaptiso-mend", given.common, given.report,
+                           "so no surface was written"),
           command(given) {}
 
     const MendCommand& command;
-    SurfaceSummary input{};
-    SurfaceSummary output{};  ///< the result; triangles 0 if there is none
     MendStatistics statistics{};
-    bool isSearched = false;                     ///< for faults: `statistics` has them
-    std::string refusal{};                       ///< why it can't be mended as asked
-    SurfaceMove move{};                          ///< to lie around another surface
-    double gapMm = 0;                            ///< to it, as written
-    bool isCopy = false;                         ///< the output has the input's bytes
-    double roundingMm = 0;                       ///< largest move of a point by the output's digits
-    std::optional<Verification> verification{};  ///< of the surface as written
-    std::uintmax_t bytes = 0;                    ///< of the output
-    std::vector<std::string> keptArrays{};       ///< values at points
+    bool isSearched = false;  ///< for faults: `statistics` has them
+    std::string refusal{};    ///< why it can't be mended as asked
+    SurfaceMove move{};       ///< to lie around another surface
+    double gapMm = 0;         ///< to it, as written
+    bool isCopy = false;      ///< the output has the input's bytes
 
     bool isMended() const { return refusal.empty(); }
     /// The result is the input.

@@ -36,13 +36,6 @@ std::string soundnessFault(const TriangleMesh& mesh, const TopologyReport& topol
                                       : std::string();
 }
 
-/// The input without the triangles that have no area, of which nothing is promised.
-TriangleMesh withArea(const TriangleMesh& input) {
-    TriangleMesh mesh = input;
-    std::erase_if(mesh.triangles, [&](const Triangle& t) { return isDegenerate(input, t); });
-    return mesh;
-}
-
 /// Listed places, around which a promise does not hold.
 struct Listed {
     const std::vector<MendedPlace>& places;

@@ -6,13 +6,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <iomanip>
-#include <iostream>
 #include <numbers>
 #include <optional>
 #include <ostream>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <ostream>
 #include <string>
-#include <string_view>
 
 #include "Common/CommonOptions.h"
 #include "Common/Json.h"

@@ -10,12 +10,10 @@
 #include "Common/Json.h"
 #include "Common/Naming.h"
 #include "Common/RunApp.h"
-#include "Common/Warnings.h"
 #include "Run.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Tiles.h"
-#include "adaptiso/SurfacePipeline/StoredMesh.h"
 
 namespace adaptiso::simplifier {
 namespace {
@@ -99,21 +97,6 @@ void warnOfCount(SimplifyRun& run) {
                                        "all its pieces, holes and borders", run.errorBoundMm()));
 }
 
-void warnOfRounding(SimplifyRun& run) {
-    if (!run.command.aim.maxErrorMm) return;
-    const auto warning = roundingWarning(baseName(run.output.file), run.errorBoundMm(),
-                                         *run.command.aim.maxErrorMm * run.output.scale,
-                                         run.roundingMm, *run.output.format);
-    if (warning) run.warnings.push_back(*warning);
-}
-
-void warnOfSize(const TriangleMesh& mesh, SimplifyRun& run) {
-    if (!run.command.aim.maxErrorMm) return;
-    const auto warning = boundOverSize("--max-error", *run.command.aim.maxErrorMm,
-                                       norm(boundingBox(mesh).size()), baseName(run.input.file));
-    if (warning) run.warnings.push_back(*warning);
-}
-
 /// Borders that lie at each other and share no points: nothing goes across.
 void warnOfPlaces(const TriangleMesh& mesh, SimplifyRun& run) {
     if (run.input.topology.count(TopologyDefect::BoundaryEdge) == 0) return;
@@ -162,18 +145,11 @@ struct TakenValues {
 
 TakenValues takeValues(const MeshFile& input, const std::vector<PointData>& data,
                        const TriangleMesh& result, SimplifyRun& run) {
-    TakenValues taken;
-    const std::vector<const PointArray*> held =
-        heldArrays(input, *run.output.format, baseName(run.input.file), baseName(run.output.file),
-                   run.warnings);
-    if (data.empty() && held.empty()) return taken;
-    const PointTransfer transfer(input.mesh, result);
-    for (const PointArray* const array : held) {
-        taken.arrays.push_back(transferred(*array, transfer));
-        run.keptArrays.push_back(array->name);
-    }
+    std::optional<PointTransfer> transfer;
+    TakenValues taken{run.takeValues(input, result, transfer), {}};
+    if (!data.empty() && !transfer) transfer.emplace(input.mesh, result);
     for (std::size_t n = 0; n < data.size(); ++n) {
-        taken.data.push_back(transferred(data[n], transfer));
+        taken.data.push_back(transferred(data[n], *transfer));
         run.data[n].arrays = std::ssize(data[n].arrays);
         run.data[n].areLabels =
             std::all_of(data[n].arrays.begin(), data[n].arrays.end(),
@@ -182,78 +158,42 @@ TakenValues takeValues(const MeshFile& input, const std::vector<PointData>& data
     return taken;
 }
 
-/// Moves what the output's digits would harm, and measures their rounding, in the input's frame.
-/// verify() finds the harm that is left.
-void fitToDigits(TriangleMesh& mesh, const FrameChange& change, SimplifyRun& run) {
-    run.roundingMm =
-        settleRounding(mesh, run.output.format->precision, change.move.value_or(AffineTransform{}))
-            .roundingMm;
-}
-
-/// \throws InvalidInput  the output's digits alone are beyond the bound
-void requireDigits(const SimplifyRun& run) {
-    if (!run.command.aim.maxErrorMm) return;
-    const auto fault =
-        roundingFault(run.roundingMm, *run.command.aim.maxErrorMm, *run.output.format);
-    if (fault) throw InvalidInput(baseName(run.output.file) + ": " + *fault);
-}
-
 /// Writes surface and values under their temporary names. \return  the surface as it can be read
 MeshFile writeFiles(const TriangleMesh& mesh, TakenValues values, const MeshFile& input,
                     const FrameChange& change, SimplifyRun& run) {
-    MeshWriteOptions write;
-    write.frame = change.frame;
-    write.volume = input.volume;
-    write.pointArrays = std::move(values.arrays);
-    write.isInFrame = true;
-    write.saysFrame = change.isSaid;
-    AtomicOutput& output = run.addOutput(run.output.file, ownFolder(run));
-    output.write([&](const fs::path& path) { writeMesh(mesh, path, write); });
-    const fs::path written = output.temporary();
-    run.bytes = fs::file_size(written);
+    MeshFile written =
+        run.writeSurface(mesh, std::move(values.arrays), input, change, ownFolder(run));
     for (std::size_t n = 0; n < values.data.size(); ++n) {
         const fs::path& file = run.data[n].output;
         run.addOutput(file, detail::folderOf(file)).write([&](const fs::path& path) {
             writePointData(values.data[n], std::ssize(mesh.triangles), path);
         });
     }
-    return readMesh(written);
-}
-
-/// Brings distances, proved and measured in the input, to those of the file.
-void scaleDistances(double factor, SimplifyRun& run) {
-    run.output.scale = factor;
-    for (double* const mm :
-         {&run.statistics.errorBoundMm, &run.roundingMm, &run.verification->maxMm}) {
-        *mm *= factor;
-    }
+    return written;
 }
 
 /// Everything from the simplified surface on; the surface is then under its temporary name.
 void finish(Simplified result, const MeshFile& input, const std::vector<PointData>& data,
             FrameChange change, SimplifyRun& run) {
-    const double factor =
-        chooseScale(run.command.scale, result.mesh, change.move.value_or(AffineTransform{}),
-                    baseName(run.output.file));
-    change.scale(factor);
-    if (change.isSaid) run.output.frame = change.frame;
+    run.scaleOutput(run.command.scale, result.mesh, change);
     TakenValues values =
         run.stage("values", [&] { return takeValues(input, data, result.mesh, run); });
-    TriangleMesh settled;
     MeshFile written = run.stage("write", [&] {
         if (!run.output.format->holdsNormals) result.mesh.normals.clear();
-        settled = result.mesh;
-        fitToDigits(settled, change, run);
-        return writeFiles(change.apply(settled), std::move(values), input, change, run);
+        return writeFiles(result.mesh, std::move(values), input, change, run);
     });
     run.stage("verify", [&] {
         summarize(written.mesh, run.output);
         verify({input.mesh, result.mesh, change.undo(std::move(written.mesh)),
                 run.roundingMm + change.roundingMm(result.mesh)},
                run);
-        requireDigits(run);
+        if (const auto bound = run.command.aim.maxErrorMm) run.requireDigits(*bound);
     });
-    scaleDistances(factor, run);
+    // of the file, not of the input
+    for (double* const mm :
+         {&run.statistics.errorBoundMm, &run.roundingMm, &run.verification->maxMm}) {
+        *mm *= run.output.scale;
+    }
 }
 
 std::string refusal(const SimplifyRun& run) {
@@ -290,22 +230,10 @@ int runSimplify(const SimplifyCommand& command) {
     SimplifyRun run(command);
     checkOutputs(run);
 
-    MeshFile input = run.stage("read", [&] {
-        return readMesh(command.input,
-                        {.keepsPointArrays = true,
-                         .inputCoordinates = statedFrame(command.inputCoordinates, 0)});
-    });
-    addWarnings(run.warnings, input.warnings, baseName(command.input));
-    run.input.format = input.format;
+    MeshFile input = run.readInput(command.inputCoordinates, "simplify");
     for (const fs::path& data : command.data) requirePointOrder(*input.format, data);
-    run.input.frame = input.frame;
-    summarize(input.mesh, run.input);
-    if (!(run.input.areaMm2 > 0)) {
-        throw InvalidInput(command.input.string() +
-                           ": its triangles have no area, so there is nothing to simplify");
-    }
     requireProvable(input.mesh, command);
-    warnOfSize(input.mesh, run);
+    run.warnOfSize(command.aim.maxErrorMm, input.mesh);
     const std::vector<PointData> data = run.stage("read", [&] { return readData(run); });
     const FrameChange change =
         changeFrame(input, run.input.file, run.command.frame, run.output.file);
@@ -323,7 +251,9 @@ int runSimplify(const SimplifyCommand& command) {
         finish(std::move(result), input, data, change, run);
         warnOfFindings(run);
         warnOfCount(run);
-        warnOfRounding(run);
+        if (const auto bound = command.aim.maxErrorMm) {
+            run.warnOfRounding(run.errorBoundMm(), *bound);
+        }
         noteScale(run.output.scale, baseName(run.output.file), run.warnings);
     }
     if (!run.writesSurface()) run.dropOutputs();
@@ -331,12 +261,9 @@ int runSimplify(const SimplifyCommand& command) {
         run.writePage([&] { return makeReport(run, input, std::move(shown)); });
     }
     if (run.failsSoundness()) run.verdict = {kExitCheckFailed, refusal(run)};
-    if (run.writesSurface()) {
-        run.next = "adaptiso-check " + shellQuoted(run.output.file.string());
-    }
-    run.deliver([&] { return jsonReport(run); }, [&](std::ostream& out) { printReport(out, run); });
-    return run.end(run.writesSurface() ? run.output.file.string() + " is written"
-                                       : "no surface is written");
+    return run.finish(
+        run.writesSurface(), [&] { return jsonReport(run); },
+        [&](std::ostream& out) { printReport(out, run); });
 }
 
 }  // namespace adaptiso::simplifier

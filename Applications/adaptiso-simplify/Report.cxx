@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <ostream>
 #include <string>
-#include <string_view>
 
-#include "Common/CommonOptions.h"
+#include "Common/CommonFrame.h"
 #include "Common/Json.h"
 #include "Common/ReportOutput.h"
 #include "Common/RunApp.h"
@@ -29,7 +28,7 @@ Json findingsJson(const std::vector<Finding>& findings) {
 }
 
 Json inputJson(const SimplifyRun& run) {
-    Json json = surfaceJson(run.input);
+    Json json = figuresJson(summaryFigures(), run.input);
     json["sound"] = isSound(run.findings);
     json["findings"] = findingsJson(run.findings);
     return json;
@@ -48,7 +47,7 @@ Json optionsJson(const SimplifyCommand& command) {
 
 Json outputJson(const SimplifyRun& run) {
     if (run.failsSoundness()) return nullptr;
-    Json json = surfaceJson(run.output);
+    Json json = figuresJson(summaryFigures(), run.output);
     json["scale"] = number(run.output.scale);
     json["bytes"] = run.bytes;
     json["written"] = run.writesSurface();
@@ -57,8 +56,7 @@ Json outputJson(const SimplifyRun& run) {
     json["errorBoundMm"] = number(run.errorBoundMm());
     json["adaptive"] = workJson(run.statistics.work);
     json["roundingMm"] = number(run.roundingMm);
-    json["verification"] = {{"samples", run.verification->samples},
-                            {"maxMm", number(run.verification->maxMm)}};
+    json["verification"] = verificationJson(run.verification);
     json["values"] = run.keptArrays;
     return json;
 }
@@ -120,10 +118,7 @@ void addVerdict(const SimplifyRun& run, Report& report) {
 
 void addInputs(const SimplifyRun& run, Report& report) {
     const SurfaceSummary& input = run.input;
-    report.inputs.push_back(
-        {"Surface", baseName(input.file) + " (" + std::string(input.format->name) + ", " +
-                        (input.frame ? std::string(toString(*input.frame)) : "frame not said") +
-                        ")"});
+    report.inputs.push_back({"Surface", fileText(input.file, *input.format, input.frame)});
     for (const DataSummary& data : run.data) {
         report.inputs.push_back(
             {"Values", baseName(data.file) + " (" + std::string(toString(data.format)) + ")"});
@@ -154,18 +149,10 @@ void addFindings(const SimplifyRun& run, Report& report) {
 }
 
 ReportTable surfaceTable(const SimplifyRun& run) {
-    ReportTable table{"Surfaces",
-                      {"Surface", "File", "Triangles", "Vertices", "Pieces", "Genus", "Area, mm²"},
-                      {}};
-    const auto add = [&](const SurfaceSummary& surface) {
-        const auto genus = surface.topology.genus();
-        table.rows.push_back({&surface == &run.input ? "read" : "written", baseName(surface.file),
-                              formatCount(surface.triangles), formatCount(surface.vertices),
-                              formatCount(std::ssize(surface.topology.components)),
-                              genus ? formatCount(*genus) : "–", formatMeasure(surface.areaMm2)});
-    };
-    add(run.input);
-    if (!run.failsSoundness()) add(run.output);
+    const auto& rows = summaryFigures();
+    ReportTable table{
+        "Surfaces", figureColumns({"Surface"}, rows), {figureCells({"read"}, rows, run.input)}};
+    if (!run.failsSoundness()) table.rows.push_back(figureCells({"written"}, rows, run.output));
     return table;
 }
 

@@ -8,21 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "Common/ProgramRun.h"
 #include "Common/SurfaceChange.h"
 #include "Pipeline.h"
-#include "adaptiso/Core/TriangleMesh.h"
-#include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/PointTransfer.h"
 #include "adaptiso/Extraction/Simplify.h"
-#include "adaptiso/MeshIO/CoordinateFrame.h"
-#include "adaptiso/MeshIO/Formats.h"
-#include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshIO/PointData.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
-#include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/Report/Report.h"
-#include "adaptiso/SurfacePipeline/FinishSurface.h"
 
 namespace adaptiso::simplifier {
 
@@ -61,21 +53,15 @@ struct DataSummary {
 };
 
 /// One run of the program, for the reports.
-struct SimplifyRun : ProgramRun {
+struct SimplifyRun : SurfaceChangeRun {
     explicit SimplifyRun(const SimplifyCommand& given)
-        : ProgramRun("adaptiso-simplify", given.common, given.report, "so no surface was written"),
+        : SurfaceChangeRun("adaptiso-simplify", given.common, given.report,
+                           "so no surface was written"),
           command(given) {}
 
     const SimplifyCommand& command;
-    SurfaceSummary input{};
     std::vector<Finding> findings{};  ///< faults of the input; empty: it is sound
-    /// The result; empty (`output.triangles` 0) if the surface was refused.
-    SurfaceSummary output{};
     SimplifyStatistics statistics{};
-    double roundingMm = 0;                       ///< largest move of a point by the output's digits
-    std::optional<Verification> verification{};  ///< of the surface as written
-    std::uintmax_t bytes = 0;                    ///< of the output
-    std::vector<std::string> keptArrays{};       ///< values at points in the surface's own file
     std::vector<DataSummary> data{};
 
     /// --require-sound, and it is not.

@@ -2,7 +2,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "Common/Json.h"
 #include "Run.h"
@@ -82,13 +81,6 @@ std::string soundnessFault(const VerifiedSurface& surface, const TriangleMesh& m
     if (pieces <= inInput) return {};
     return formatCount(pieces) + " pieces are inside out, " + formatCount(inInput) +
            " of the input";
-}
-
-/// The input without the triangles that simplify() drops: one that lies alone is near nothing.
-TriangleMesh withArea(const TriangleMesh& input) {
-    TriangleMesh mesh = input;
-    std::erase_if(mesh.triangles, [&](const Triangle& t) { return isDegenerate(input, t); });
-    return mesh;
 }
 
 }  // namespace

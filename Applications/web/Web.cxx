@@ -235,6 +235,7 @@ void openImage(const std::string& path, const ReadOptions& options, bool isLabel
     const ImageGeometry& geometry = view.geometry();
     answer = jsonText({{"format", image->read.format},
                        {"geometry", geometryJson(geometry)},
+                       {"defaultErrorMm", orNull(requestedBoundMm({}, geometry))},
                        {"orientation", summarizeAxes(geometry).orientation},
                        {"type", toString(view.pixelType())},
                        {"bytes", static_cast<double>(geometry.voxelCount()) *

@@ -1,8 +1,8 @@
 """The recipes of CONTRIBUTING.md, followed on a copy of a module's sources: a mesh format and a label table are three
-files each, as are a check and its option. What changed is compiled as the build folder compiles its like, and linked
-before the module's library into its unit tests.
+files each, as are a check and its option; an option is two. What changed is compiled as the build folder compiles its
+like, and linked before the module's library into its unit tests.
 
-recipes.py SOURCE BUILD NINJA mesh|labels|check"""
+recipes.py SOURCE BUILD NINJA mesh|labels|check|option"""
 import json
 import os
 import shlex
@@ -44,7 +44,7 @@ class Copy:
         output = str(self.folder / (file.stem + ".o"))
         words[words.index("-o") + 1] = output
         words[words.index("-c") + 1] = str(file)
-        words = [word for word in words if "ccache" not in word]
+        words = [word for word in words if "ccache" not in word] + ["-O0"]  # compiling takes most of the time
         words[1:1] = [f"-I{self.folder / self.module / name}" for name in ("include", "src")]
         subprocess.run(words, check=True, cwd=self.build)
         return output
@@ -120,12 +120,31 @@ def check(copy: Copy) -> list:
     return copy.touched()
 
 
+def option(copy: Copy) -> list:
+    copy.insert("include/adaptiso/Tetrahedra/MesherFiles.h", "    std::optional<double> radiusEdge{};\n", "\n    bool isRequested()")
+    copy.insert("src/MesherFiles.cxx", """option<&MesherOptions::radiusEdge>({.name = "radius-edge", .key = "radiusEdge", .valueName = "R",
+        .help = "Largest radius by shortest edge", .standard = "1.4", .rule = {.least = 1, .isAbove = true}}),\n""",
+                "option<&MesherOptions::elementMm>(")
+    copy.insert("src/MesherFiles.cxx", """    if (options.mesher == "tetgen" && options.radiusEdge)
+        return {"tetgen", {"-pq" + shortestText(*options.radiusEdge) + "/10aAQ", "head.poly"}, {}, {}, {}};\n""",
+                '    if (options.mesher == "tetgen") {')
+    # where all rows are taken: the command line (--help, pages, README, types for npm) and Python (types, docstrings)
+    for taker in ("Applications/Common/Mesher.cxx", "Wrapping/Python/src/OptionRows.cxx"):
+        assert "elementOptions()" in (copy.original.parents[1] / taker).read_text(), taker
+    test = next(path for path in copy.commands if path.name == "MesherFilesTest.cxx")
+    copy.run_tests([copy.compile(RECIPES / "RadiusEdgeTest.cxx", test),
+                    copy.compile(copy.folder / copy.module / "src/MesherFiles.cxx", copy.original / "src/MesherFiles.cxx")],
+                   "RadiusEdge*:Mesher*")
+    return copy.touched()
+
+
 def main() -> int:
     source, build, ninja, which = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3], sys.argv[4]
     if not ninja.endswith("ninja") or not (build / "compile_commands.json").exists():
         print("needs a build folder of ninja with compile_commands.json")
         return SKIPPED
-    module, recipe = {"mesh": ("MeshIO", mesh), "labels": ("LabelNames", labels), "check": ("SurfaceChecks", check)}[which]
+    module, recipe = {"mesh": ("MeshIO", mesh), "labels": ("LabelNames", labels), "check": ("SurfaceChecks", check),
+                      "option": ("Tetrahedra", option)}[which]
     with tempfile.TemporaryDirectory() as folder:
         touched = recipe(Copy(source, build, ninja, module, Path(folder)))
     print(f"{len(touched)} files of the module touched: {', '.join(touched)}")

@@ -8,7 +8,7 @@ const [build, version] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url)), folder = join(build, "npm", "adaptiso");
 rmSync(join(build, "npm"), { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });
-for (const name of ["README.md", "bin.mjs", "index.mjs", "index.d.ts", "niivue.mjs", "niivue.d.ts", "worker.mjs"]) copyFileSync(join(here, name), join(folder, name));
+for (const name of ["README.md", "bin.mjs", "index.mjs", "index.d.ts", "options.d.ts", "niivue.mjs", "niivue.d.ts", "worker.mjs"]) copyFileSync(join(here, name), join(folder, name));
 copyFileSync(join(here, "../../../LICENSE"), join(folder, "LICENSE"));
 const read = (name) => readFileSync(join(build, name));
 if (!read("adaptiso.wasm").equals(read("adaptiso-node.wasm"))) throw new Error("adaptiso.wasm and adaptiso-node.wasm differ");

@@ -1,6 +1,8 @@
 /** Adaptive, watertight isosurfaces and head models, by the programs of adaptiso as WebAssembly.
  *  Each call runs in a worker of its own: several may run at once, and none blocks the caller. */
 
+import type { BemRows, CheckRows, LabelsRows, MendRows, MeshRows, SimplifyRows } from "./options.d.ts";
+
 export type Samples = Uint8Array | Int8Array | Uint16Array | Int16Array | Uint32Array | Int32Array | Float32Array | Float64Array;
 
 /** Samples, x fastest, and where they lie. */
@@ -45,29 +47,18 @@ export interface MeshResult extends RunResult { mesh: MeshArray }
 /** A program refused, with the line it prints and its exit code: 2 usage, 3 bad input, 4 internal error. */
 export class AdaptisoError extends Error { readonly exitCode: number }
 
-export interface MeshOptions extends RunOptions {
+export interface MeshOptions extends RunOptions, MeshRows {
   /** Isovalue; "auto" by Otsu's method (the default). */
   iso?: number | "auto";
-  /** The distance that no point may exceed, mm. */
-  maxErrorMm?: number;
-  triangles?: number;
 }
 /** adaptiso-mesh: the surface of an image. */
 export function mesh(image: ImageInput, options?: MeshOptions): Promise<MeshResult>;
 
-export interface SimplifyOptions extends RunOptions { maxErrorMm?: number; triangles?: number }
+export interface SimplifyOptions extends RunOptions, SimplifyRows {}
 /** adaptiso-simplify: fewer triangles within a stated distance. */
 export function simplify(surface: MeshInput, options?: SimplifyOptions): Promise<MeshResult>;
 
-export interface MendOptions extends RunOptions {
-  /** The distance that no point may exceed, but for what the report lists; default .2 % of the diagonal. */
-  maxErrorMm?: number;
-  /** Holes up to this wide are closed; default 5 % of the diagonal. */
-  maxHoleMm?: number;
-  /** Leave wider holes open; otherwise they are refused. */
-  open?: boolean;
-  /** Cut or fill every handle. */
-  ball?: boolean;
+export interface MendOptions extends RunOptions, MendRows {
   /** A closed surface in one piece: the result is moved outward where it must, to lie `gapMm` around it. */
   around?: MeshInput;
   gapMm?: number;
@@ -76,16 +67,16 @@ export interface MendOptions extends RunOptions {
 export function mend(surface: MeshInput, options?: MendOptions): Promise<MeshResult>;
 
 /** adaptiso-check: soundness of surfaces. Faults are no exception: `exitCode` is 1 and `report` names them. */
-export function check(surfaces: MeshInput | MeshInput[], options?: RunOptions): Promise<RunResult>;
+export function check(surfaces: MeshInput | MeshInput[], options?: RunOptions & CheckRows): Promise<RunResult>;
 
 /** adaptiso-compare: distances between two surfaces. */
 export function compare(a: MeshInput, b: MeshInput, options?: RunOptions): Promise<RunResult>;
 
-export interface LabelsOptions extends RunOptions { format?: "stl" | "ply" | "obj" | "vtp" | "glb" | "3mf" }
+export interface LabelsOptions extends RunOptions, LabelsRows { format?: "stl" | "ply" | "obj" | "vtp" | "glb" | "3mf" }
 /** adaptiso-labels: surfaces of all regions of a segmentation, as files. */
 export function labels(image: ImageInput, options?: LabelsOptions): Promise<RunResult>;
 
-export interface BemOptions extends RunOptions { mask?: ImageInput; vertices?: number }
+export interface BemOptions extends RunOptions, BemRows { mask?: ImageInput; vertices?: number }
 /** adaptiso-bem: a head model, as the files of its folder. */
 export function bem(t1: ImageInput, options?: BemOptions): Promise<RunResult>;
 

@@ -128,11 +128,20 @@ function writtenFile(program, done, path) {
   return file;
 }
 
+/** Options as the program has them: `maxErrorMm: 0.5` is --max-error=0.5. */
+function namedOptions(options) {
+  return Object.entries(options).filter(([, value]) => value !== undefined && value !== false).map(([key, value]) => {
+    const name = key.replace(/(Mm3?|Deg)$/, "").replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
+    return value === true ? `--${name}` : `--${name}=${value}`;
+  });
+}
+
 /** Runs with a report. \param mayFail  exit code 1, a check failed, is no error \param inputs  after all options */
 async function runReported(program, args, inputs, files, options) {
-  const { mayFail = false, args: further = [], ...rest } = options;
+  const { mayFail = false, args: further = [], onProgress, signal, ...named } = options;
   requireStrings(further);
-  const done = await run(program, [...args, ...further, "--json", kReport, ...(inputs.length > 0 ? ["--"] : []), ...inputs], files, rest);
+  const done = await run(program, [...args, ...namedOptions(named), ...further, "--json", kReport, ...(inputs.length > 0 ? ["--"] : []), ...inputs],
+    files, { onProgress, signal });
   const lines = done.stderr.split("\n").filter((line) => line !== "");
   if (done.exitCode > (mayFail ? 1 : 0)) throw new AdaptisoError(lines.at(-1) ?? `adaptiso-${program} failed`, done.exitCode);
   const report = writtenFile(program, done, kReport);
@@ -233,31 +242,23 @@ async function toFile(input, toBytes, name) {
 const imageFile = (input, name = "image.nii") => toFile(input, nifti, name);
 const meshFile = (input, name = "surface.ply") => toFile(input, ply, name);
 
-function aimOf({ maxErrorMm, triangles }) {
-  return [...(maxErrorMm === undefined ? [] : ["--max-error", String(maxErrorMm)]),
-    ...(triangles === undefined ? [] : ["--triangles", String(triangles)])];
-}
-
 /** `more`: options whose value is a file, each with it. */
 async function makeSurface(program, args, file, options, more = []) {
-  const { iso: _iso, maxErrorMm: _mm, triangles: _count, ...rest } = options;
   const files = apart([file, ...more.map(([, each]) => each)]), others = more.flatMap(([option], n) => [option, files[n + 1].path]);
-  const done = await runReported(program, [...args, ...others, ...aimOf(options), "--coordinates", "ras", "-o", kSurface], [files[0].path], files, rest);
+  const done = await runReported(program, [...args, ...others, "--coordinates", "ras", "-o", kSurface], [files[0].path], files, options);
   return { ...done, mesh: parsePly(writtenFile(program, done, kSurface).bytes) };
 }
 
-export async function mesh(image, options = {}) {
-  return makeSurface("mesh", ["--iso", String(options.iso ?? "auto")], await imageFile(image), options);
+export async function mesh(image, { iso = "auto", ...options } = {}) {
+  return makeSurface("mesh", ["--iso", String(iso)], await imageFile(image), options);
 }
 
 export async function simplify(surface, options = {}) {
   return makeSurface("simplify", [], await meshFile(surface), options);
 }
 
-export async function mend(surface, { maxHoleMm, open = false, ball = false, around, gapMm, ...options } = {}) {
-  const args = [...(maxHoleMm === undefined ? [] : ["--max-hole", String(maxHoleMm)]), ...(open ? ["--open"] : []), ...(ball ? ["--ball"] : []),
-    ...(gapMm === undefined ? [] : ["--gap", String(gapMm)])];
-  return makeSurface("mend", args, await meshFile(surface), options, around === undefined ? [] : [["--around", await meshFile(around, "around.ply")]]);
+export async function mend(surface, { around, ...options } = {}) {
+  return makeSurface("mend", [], await meshFile(surface), options, around === undefined ? [] : [["--around", await meshFile(around, "around.ply")]]);
 }
 
 export async function check(surfaces, options = {}) {
@@ -276,8 +277,8 @@ export async function labels(image, { format = "stl", ...options } = {}) {
   return runReported("labels", ["-o", kRegions, "--format", format], [file.path], [file], options);
 }
 
-export async function bem(t1, { mask, vertices, ...options } = {}) {
+export async function bem(t1, { mask, ...options } = {}) {
   const files = apart([await imageFile(t1, "t1.nii"), ...(mask === undefined ? [] : [await imageFile(mask, "mask.nii")])]);
   return runReported("bem", [`--t1=${files[0].path}`, ...(mask === undefined ? [] : [`--brain-mask=${files[1].path}`]),
-    ...(vertices === undefined ? [] : ["--vertices", String(vertices)]), "-o", kModel], [], files, options);
+    "-o", kModel], [], files, options);
 }

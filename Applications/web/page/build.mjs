@@ -34,6 +34,13 @@ const { formats, presets } = await choices();
 const formatOptions = (chosen) => formats.map(({ name, extension }) =>
   `<option value="${extension}"${extension === chosen ? " selected" : ""}>${name}</option>`).join("");
 
+/** An option's default in words, of the package's types, which are made from the programs; `%`: its share alone. */
+const types = read(join(here, "../npm/options.d.ts")).toString();
+function defaultOf(program, option, isShare) {
+  const words = new RegExp(`interface ${program}Rows[^}]*?default: ([^\\n]*?)\\)\\. \\*/ ${option}\\?`).exec(types)[1];
+  return isShare ? /^[\d.]+ %/.exec(words)[0] : words;
+}
+
 const kRun = `<div class="progress" hidden><p class="stage" aria-live="polite"></p><progress max="100" aria-label="Progress"></progress>
       <button type="button" class="cancel">Cancel</button></div>
     <p class="refusal" role="alert" hidden></p><div class="choices row"></div><div class="result" hidden></div>`;
@@ -54,6 +61,7 @@ const parts = {
   HASHES: [script, niivue].map((text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`).join(" "),
 };
 const page = read(join(here, "src/page.html")).toString()
+  .replace(/\{\{DEFAULT (\w+) (\w+)( %)?\}\}/g, (_, program, option, isShare) => defaultOf(program, option, isShare))
   .replace(/\{\{WHY (.*?): (.*?)\}\}/g, `<details class="why" name="why"><summary aria-label="About $1">?</summary><p>$2</p></details>`)
   .replace(/\{\{([A-Z]+)\}\}/g, (_, name) => parts[name]);
 writeFileSync(join(folder, "adaptiso.html"), page);

@@ -1,7 +1,6 @@
 #include "adaptiso/Core/AabbTree.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "adaptiso/Core/ForeignContent.h"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <system_error>
 

@@ -1,7 +1,5 @@
 #include "adaptiso/Core/TriangleMesh.h"
 
-#include <algorithm>
-
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {

@@ -43,8 +43,8 @@ Fault faultOfNumbers(const BemModelOptions& options) {
                toWords(row.facts.rule);
     }
     const auto [least, most] = std::minmax({head.minSkullMm, head.minScalpMm, head.minCsfMm});
-    if (!(least >= CheckRules::kDefaultMinGapMm) || !(most <= kMostGapMm)) {
-        return "{min-gap} must be " + formatNumber(CheckRules::kDefaultMinGapMm) +
+    if (!(least >= CheckRules::kLeastGapMm) || !(most <= kMostGapMm)) {
+        return "{min-gap} must be " + formatNumber(CheckRules::kLeastGapMm) +
                " mm or more, as adaptiso-check wants it, and at most " + formatNumber(kMostGapMm);
     }
     if (const auto& edges = options.edgeLengthMm;

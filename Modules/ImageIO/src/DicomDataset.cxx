@@ -24,22 +24,17 @@ bool parseNumbers(std::string_view text, std::vector<double>& numbers) {
 }
 
 std::string_view nameOf(DicomTag tag) {
-    switch (tag) {
-        case tag::kPixelSpacing:
-            return "PixelSpacing";
-        case tag::kImagePosition:
-            return "ImagePositionPatient";
-        case tag::kImageOrientation:
-            return "ImageOrientationPatient";
-        case tag::kRescaleSlope:
-            return "RescaleSlope";
-        case tag::kRescaleIntercept:
-            return "RescaleIntercept";
-        case tag::kSpacingBetweenSlices:
-            return "SpacingBetweenSlices";
-        default:
-            return "a value";
+    constexpr std::pair<DicomTag, std::string_view> kNames[] = {
+        {tag::kPixelSpacing, "PixelSpacing"},
+        {tag::kImagePosition, "ImagePositionPatient"},
+        {tag::kImageOrientation, "ImageOrientationPatient"},
+        {tag::kRescaleSlope, "RescaleSlope"},
+        {tag::kRescaleIntercept, "RescaleIntercept"},
+        {tag::kSpacingBetweenSlices, "SpacingBetweenSlices"}};
+    for (const auto& [known, name] : kNames) {
+        if (known == tag) return name;
     }
+    return "a value";
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <functional>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "DicomPixels.h"
 #include "FileFault.h"

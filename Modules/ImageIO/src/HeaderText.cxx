@@ -1,7 +1,6 @@
 #include "HeaderText.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 
 #include "ByteSource.h"

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -20,6 +19,11 @@ namespace adaptiso::detail {
 namespace fs = std::filesystem;
 
 namespace {
+
+[[noreturn]] void refuseMetaHeader(const fs::path& file, const std::string& what,
+                                   const std::string& remedy = "repair the header") {
+    refuse(file, "its MetaImage header is damaged: " + what, remedy);
+}
 
 struct MetaHeader {
     std::map<std::string, std::string, std::less<>> fields;
@@ -85,10 +89,8 @@ bool parseFlag(const fs::path& file, const MetaHeader& header,
     const std::string text = lowerCase(header.find(names).value_or("false"));
     if (text == "true" || text == "1") return true;
     if (text == "false" || text == "0") return false;
-    refuse(
-        file,
-        fmt::format("its MetaImage header is damaged: {} is '{}'", *names.begin(), printable(text)),
-        "it must be True or False");
+    refuseMetaHeader(file, fmt::format("{} is '{}'", *names.begin(), printable(text)),
+                     "it must be True or False");
 }
 
 std::vector<double> numbersIn(const fs::path& file, std::string_view name, std::string_view text,
@@ -97,20 +99,14 @@ std::vector<double> numbersIn(const fs::path& file, std::string_view name, std::
     for (const std::string_view word : words(text)) {
         const auto value = parseNumber(word);
         if (!value || !std::isfinite(*value)) {
-            refuse(file,
-                   fmt::format("its MetaImage header is damaged: {} holds '{}', not a "
-                               "finite number",
-                               name, printable(word)),
-                   "repair the header");
+            refuseMetaHeader(
+                file, fmt::format("{} holds '{}', not a finite number", name, printable(word)));
         }
         numbers.push_back(*value);
     }
     if (numbers.size() != count) {
-        refuse(file,
-               fmt::format("its MetaImage header is damaged: {} holds {} numbers, must "
-                           "hold {}",
-                           name, numbers.size(), count),
-               "repair the header");
+        refuseMetaHeader(
+            file, fmt::format("{} holds {} numbers, must hold {}", name, numbers.size(), count));
     }
     return numbers;
 }
@@ -176,7 +172,7 @@ struct MetaExtents {
 MetaExtents parseExtents(const fs::path& file, const MetaHeader& header) {
     const auto dimensions = parseInteger(header.require(file, "NDims"));
     if (!dimensions || *dimensions < 1 || *dimensions > 10) {
-        refuse(file, "its MetaImage header is damaged: NDims must be 1 to 10", "repair the header");
+        refuseMetaHeader(file, "NDims must be 1 to 10");
     }
     if (*dimensions != 3 && *dimensions != 4) {
         refuse(file, fmt::format("has {} dimensions, must have 3", *dimensions),
@@ -185,25 +181,16 @@ MetaExtents parseExtents(const fs::path& file, const MetaHeader& header) {
     MetaExtents extents{static_cast<std::size_t>(*dimensions)};
     const auto sizes = words(header.require(file, "DimSize"));
     if (sizes.size() != extents.dimensions) {
-        refuse(file,
-               fmt::format("its MetaImage header is damaged: DimSize holds {} numbers for "
-                           "NDims {}",
-                           sizes.size(), extents.dimensions),
-               "repair the header");
+        refuseMetaHeader(file, fmt::format("DimSize holds {} numbers for NDims {}", sizes.size(),
+                                           extents.dimensions));
     }
     for (std::size_t axis = 0; axis < extents.dimensions; ++axis) {
         const auto extent = parseInteger(sizes[axis]);
-        if (!extent) {
-            refuse(file, "its MetaImage header is damaged: DimSize holds no whole numbers",
-                   "repair the header");
-        }
+        if (!extent) refuseMetaHeader(file, "DimSize holds no whole numbers");
         if (axis < 3) {
             extents.size[axis] = *extent;
         } else {
-            if (*extent < 1) {
-                refuse(file, "its MetaImage header is damaged: DimSize holds a number below 1",
-                       "repair the header");
-            }
+            if (*extent < 1) refuseMetaHeader(file, "DimSize holds a number below 1");
             extents.volumeCount = *extent;
         }
     }
@@ -286,9 +273,7 @@ std::int64_t parseHeaderSize(const fs::path& file, const MetaHeader& header, boo
     const auto size = parseInteger(*text);
     if (!size || *size < -1 || (isCompressed && *size != 0) ||
         (*size > 0 && static_cast<std::uint64_t>(*size) < least)) {
-        refuse(file,
-               fmt::format("its MetaImage header is damaged: HeaderSize '{}'", printable(*text)),
-               "repair the header");
+        refuseMetaHeader(file, fmt::format("HeaderSize '{}'", printable(*text)));
     }
     return *size;
 }

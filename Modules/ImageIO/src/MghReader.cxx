@@ -20,21 +20,15 @@ namespace {
 constexpr std::size_t kHeaderBytes = 284;
 
 PixelType pixelTypeOfCode(const fs::path& file, std::int32_t code) {
-    switch (code) {
-        case 0:
-            return PixelType::UInt8;
-        case 1:
-            return PixelType::Int32;
-        case 3:
-            return PixelType::Float32;
-        case 4:
-            return PixelType::Int16;
-        case 10:
-            return PixelType::UInt16;
-        default:
-            refuse(file, fmt::format("unsupported MGH data type {}", code),
-                   "convert it with mri_convert");
+    constexpr std::pair<int, PixelType> kTypes[] = {{0, PixelType::UInt8},
+                                                    {1, PixelType::Int32},
+                                                    {3, PixelType::Float32},
+                                                    {4, PixelType::Int16},
+                                                    {10, PixelType::UInt16}};
+    for (const auto& [number, type] : kTypes) {
+        if (number == code) return type;
     }
+    refuse(file, fmt::format("unsupported MGH data type {}", code), "convert it with mri_convert");
 }
 
 /// vox2ras: Mdc times spacing; c_ras is the centre, voxel size / 2 (mghRead).

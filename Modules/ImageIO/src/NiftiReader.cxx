@@ -9,6 +9,7 @@
 #include "DataPlace.h"
 #include "FileFault.h"
 #include "HeaderText.h"
+#include "NiftiTypes.h"
 #include "Readers.h"
 #include "Samples.h"
 
@@ -162,16 +163,7 @@ NiftiHeader readHeader(const fs::path& file) {
 }
 
 PixelType pixelTypeOfCode(const fs::path& file, const NiftiHeader& h) {
-    struct Row {
-        int code;
-        PixelType type;
-    };
-    static constexpr Row kTypes[] = {{2, PixelType::UInt8},    {256, PixelType::Int8},
-                                     {4, PixelType::Int16},    {512, PixelType::UInt16},
-                                     {8, PixelType::Int32},    {768, PixelType::UInt32},
-                                     {1024, PixelType::Int64}, {1280, PixelType::UInt64},
-                                     {16, PixelType::Float32}, {64, PixelType::Float64}};
-    for (const Row& row : kTypes) {
+    for (const NiftiType& row : kNiftiTypes) {
         if (row.code != h.datatype) continue;
         if (h.bitpix != static_cast<int>(8 * bytesPerPixel(row.type))) {
             refuse(file,

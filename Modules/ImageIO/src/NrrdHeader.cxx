@@ -332,53 +332,29 @@ std::string volumesNameOf(const NrrdHeader& header) {
 
 PixelType pixelTypeOf(const fs::path& file, const NrrdHeader& header) {
     const std::string_view text = header.require(file, "type");
-    static const std::map<std::string_view, PixelType> kTypes = {
-        {"signed char", PixelType::Int8},
-        {"int8", PixelType::Int8},
-        {"int8_t", PixelType::Int8},
-        {"uchar", PixelType::UInt8},
-        {"unsigned char", PixelType::UInt8},
-        {"uint8", PixelType::UInt8},
-        {"uint8_t", PixelType::UInt8},
-        {"short", PixelType::Int16},
-        {"short int", PixelType::Int16},
-        {"signed short", PixelType::Int16},
-        {"signed short int", PixelType::Int16},
-        {"int16", PixelType::Int16},
-        {"int16_t", PixelType::Int16},
-        {"ushort", PixelType::UInt16},
-        {"unsigned short", PixelType::UInt16},
-        {"unsigned short int", PixelType::UInt16},
-        {"uint16", PixelType::UInt16},
-        {"uint16_t", PixelType::UInt16},
-        {"int", PixelType::Int32},
-        {"signed int", PixelType::Int32},
-        {"int32", PixelType::Int32},
-        {"int32_t", PixelType::Int32},
-        {"uint", PixelType::UInt32},
-        {"unsigned int", PixelType::UInt32},
-        {"uint32", PixelType::UInt32},
-        {"uint32_t", PixelType::UInt32},
-        {"longlong", PixelType::Int64},
-        {"long long", PixelType::Int64},
-        {"long long int", PixelType::Int64},
-        {"signed long long", PixelType::Int64},
-        {"signed long long int", PixelType::Int64},
-        {"int64", PixelType::Int64},
-        {"int64_t", PixelType::Int64},
-        {"ulonglong", PixelType::UInt64},
-        {"unsigned long long", PixelType::UInt64},
-        {"unsigned long long int", PixelType::UInt64},
-        {"uint64", PixelType::UInt64},
-        {"uint64_t", PixelType::UInt64},
-        {"float", PixelType::Float32},
-        {"double", PixelType::Float64}};
-    const auto it = kTypes.find(lowerCase(text));
-    if (it == kTypes.end()) {
-        refuse(file, fmt::format("unsupported NRRD type '{}'", printable(text)),
-               "convert it to a scalar integer or float type");
+    static constexpr std::pair<PixelType, std::string_view> kTypes[] = {
+        {PixelType::Int8, "signed char, int8, int8_t"},
+        {PixelType::UInt8, "uchar, unsigned char, uint8, uint8_t"},
+        {PixelType::Int16, "short, short int, signed short, signed short int, int16, int16_t"},
+        {PixelType::UInt16, "ushort, unsigned short, unsigned short int, uint16, uint16_t"},
+        {PixelType::Int32, "int, signed int, int32, int32_t"},
+        {PixelType::UInt32, "uint, unsigned int, uint32, uint32_t"},
+        {PixelType::Int64,
+         "longlong, long long, long long int, signed long long, signed long long int, int64, "
+         "int64_t"},
+        {PixelType::UInt64,
+         "ulonglong, unsigned long long, unsigned long long int, uint64, uint64_t"},
+        {PixelType::Float32, "float"},
+        {PixelType::Float64, "double"}};
+    const std::string name = lowerCase(text);
+    for (const auto& [type, names] : kTypes) {
+        const bool isIt =
+            name.find(',') == name.npos &&
+            fmt::format(", {}, ", names).find(fmt::format(", {}, ", name)) != name.npos;
+        if (isIt) return type;
     }
-    return it->second;
+    refuse(file, fmt::format("unsupported NRRD type '{}'", printable(text)),
+           "convert it to a scalar integer or float type");
 }
 
 NrrdAxes axesOf(const fs::path& file, const NrrdHeader& header) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "FileFault.h"
+#include "NiftiTypes.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -20,32 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr std::int16_t kScannerCode = 1;
 constexpr std::uint8_t kMillimetres = 2;
-
-std::int16_t codeOf(PixelType type) {
-    switch (type) {
-        case PixelType::UInt8:
-            return 2;
-        case PixelType::Int8:
-            return 256;
-        case PixelType::UInt16:
-            return 512;
-        case PixelType::Int16:
-            return 4;
-        case PixelType::UInt32:
-            return 768;
-        case PixelType::Int32:
-            return 8;
-        case PixelType::UInt64:
-            return 1280;
-        case PixelType::Int64:
-            return 1024;
-        case PixelType::Float32:
-            return 16;
-        case PixelType::Float64:
-            return 64;
-    }
-    throw InternalError("writeNifti: unknown pixel type");
-}
 
 /// Rows of the affine, RAS mm.
 using Rows = std::array<std::array<double, 4>, 3>;
@@ -112,7 +87,8 @@ void putGeometry(Header& header, const ImageGeometry& geometry, const Rows& rows
 std::string headerOf(const VolumeView& volume) {
     const ImageGeometry& geometry = volume.geometry();
     const Rows rows = rasRows(geometry);
-    const std::int16_t code = codeOf(volume.pixelType());
+    const auto code = static_cast<std::int16_t>(
+        std::ranges::find(detail::kNiftiTypes, volume.pixelType(), &detail::NiftiType::type)->code);
     const auto bits = static_cast<std::int16_t>(8 * bytesPerPixel(volume.pixelType()));
     if (fitsVersion1(geometry, rows)) {
         constexpr std::size_t kBegin = 352;

@@ -9,11 +9,9 @@
 #endif
 
 #include <array>
-#include <bit>
 #include <cstring>
 #include <limits>
 #include <memory>
-#include <string>
 
 #include "FileFault.h"
 #include "adaptiso/Core/Errors.h"

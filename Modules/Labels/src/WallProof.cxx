@@ -1,7 +1,6 @@
 #include "WallProof.h"
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 #include <unordered_map>
 #include <utility>

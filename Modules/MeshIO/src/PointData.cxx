@@ -202,7 +202,7 @@ PointData decodeGiftiData(std::string_view bytes) {
     return data;
 }
 
-void encodeGiftiData(const PointData& data, ByteSink& sink) {
+void encodeGiftiData(const PointData& data, std::int64_t, ByteSink& sink) {
     sink << kGiftiHead << "<GIFTI Version=\"1.0\" NumberOfDataArrays=\""
          << static_cast<std::int64_t>(data.arrays.size()) << "\">\n";
     encodeMetadata(data.metadata, sink);
@@ -279,7 +279,7 @@ PointData decodeMghData(std::string_view bytes) {
     return data;
 }
 
-void encodeMghData(const PointData& data, ByteSink& sink) {
+void encodeMghData(const PointData& data, std::int64_t, ByteSink& sink) {
     const bool areLabels = data.arrays.front().areLabels();
     for (const std::int64_t number :
          {std::int64_t{1}, data.points, std::int64_t{1}, std::int64_t{1},
@@ -415,7 +415,7 @@ PointData decodeAnnot(std::string_view bytes) {
     return data;
 }
 
-void encodeAnnot(const PointData& data, ByteSink& sink) {
+void encodeAnnot(const PointData& data, std::int64_t, ByteSink& sink) {
     sink.bigEndian(static_cast<std::int32_t>(data.points));
     std::int32_t point = 0;
     for (const std::int32_t label :
@@ -472,18 +472,20 @@ void requireWritable(const PointData& data, const std::string& file) {
     }
 }
 
-PointData decode(std::string_view bytes, PointDataFormat format) {
-    switch (format) {
-        case PointDataFormat::FreeSurferCurv:
-            return decodeCurv(bytes);
-        case PointDataFormat::FreeSurferAnnot:
-            return decodeAnnot(bytes);
-        case PointDataFormat::FreeSurferMgh:
-            return meshio::decodeMghData(bytes);
-        case PointDataFormat::Gifti:
-            return meshio::decodeGiftiData(bytes);
-    }
-    throw InternalError("decodePointData: unknown format of values at points");
+/// How a format is named, read and written; in the order of PointDataFormat.
+struct PointDataCodec {
+    std::string_view name;
+    PointData (*decode)(std::string_view);
+    void (*encode)(const PointData&, std::int64_t triangles, ByteSink&);
+};
+constexpr PointDataCodec kPointDataCodecs[] = {
+    {"FreeSurfer curv", decodeCurv, encodeCurv},
+    {"FreeSurfer annot", decodeAnnot, encodeAnnot},
+    {"FreeSurfer mgh", meshio::decodeMghData, meshio::encodeMghData},
+    {"GIFTI", meshio::decodeGiftiData, meshio::encodeGiftiData}};
+
+const PointDataCodec& codecOf(PointDataFormat format) {
+    return kPointDataCodecs[static_cast<std::size_t>(format)];
 }
 
 /// Advice for a file that has values at points in a form that is not read; empty: it may be
@@ -504,17 +506,7 @@ std::string adviceFor(const std::filesystem::path& path) {
 }  // namespace
 
 std::string_view toString(PointDataFormat format) {
-    switch (format) {
-        case PointDataFormat::FreeSurferCurv:
-            return "FreeSurfer curv";
-        case PointDataFormat::FreeSurferAnnot:
-            return "FreeSurfer annot";
-        case PointDataFormat::FreeSurferMgh:
-            return "FreeSurfer mgh";
-        case PointDataFormat::Gifti:
-            return "GIFTI";
-    }
-    throw InternalError("toString: unknown format of values at points");
+    return codecOf(format).name;
 }
 
 PointDataFormat findPointDataFormat(const std::filesystem::path& path) {
@@ -527,7 +519,7 @@ PointDataFormat findPointDataFormat(const std::filesystem::path& path) {
 
 PointData decodePointData(std::string_view bytes, PointDataFormat format, std::string_view name) {
     return meshio::naming(name, [&] {
-        PointData data = decode(bytes, format);
+        PointData data = codecOf(format).decode(bytes);
         if (const std::string fault = faultOf(data); !fault.empty()) damaged(fault);
         return data;
     });
@@ -543,18 +535,7 @@ PointData readPointData(const std::filesystem::path& path) {
 void writePointData(const PointData& data, std::int64_t triangles,
                     const std::filesystem::path& path) {
     requireWritable(data, path.string());
-    writeBytes(path, [&](ByteSink& sink) {
-        switch (data.format) {
-            case PointDataFormat::FreeSurferCurv:
-                return encodeCurv(data, triangles, sink);
-            case PointDataFormat::FreeSurferAnnot:
-                return encodeAnnot(data, sink);
-            case PointDataFormat::FreeSurferMgh:
-                return meshio::encodeMghData(data, sink);
-            case PointDataFormat::Gifti:
-                return meshio::encodeGiftiData(data, sink);
-        }
-    });
+    writeBytes(path, [&](ByteSink& sink) { codecOf(data.format).encode(data, triangles, sink); });
 }
 
 }  // namespace adaptiso

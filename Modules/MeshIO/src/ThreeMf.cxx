@@ -2,7 +2,6 @@
 // (components), and the items to build, which place objects. Ours hold the frame's numbers in mm.
 // Read as well: models in several files (production extension, as Bambu Studio and Orca write).
 
-#include <array>
 #include <map>
 #include <optional>
 #include <sstream>

@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdint>
 #include <exception>
-#include <limits>
 #include <memory>
 
 #include "Bytes.h"

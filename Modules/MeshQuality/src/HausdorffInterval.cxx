@@ -1,7 +1,6 @@
 #include "adaptiso/MeshQuality/HausdorffInterval.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>

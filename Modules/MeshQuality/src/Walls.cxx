@@ -1,8 +1,6 @@
 #include "adaptiso/MeshQuality/Walls.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>

@@ -1,8 +1,6 @@
 #include "RecursiveGaussian.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "adaptiso/Core/Parallel.h"

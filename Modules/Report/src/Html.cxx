@@ -14,18 +14,13 @@ struct VerdictWords {
 };
 
 VerdictWords verdictWords(ReportVerdict verdict, bool hasWarnings) {
-    switch (verdict) {
-        case ReportVerdict::Passed:
-            if (hasWarnings) return {"doubtful", "▲", "PASSED WITH WARNINGS"};
-            return {"passed", "✔", "PASSED"};
-        case ReportVerdict::Failed:
-            return {"failed", "✘", "FAILED"};
-        case ReportVerdict::Done:
-            return {"done", "●", "DONE"};
-        case ReportVerdict::Unfinished:
-            return {"doubtful", "▲", "NOT FINISHED"};
-    }
-    throw InternalError("verdictWords: unknown verdict");
+    static constexpr VerdictWords kWords[] = {{"passed", "✔", "PASSED"},
+                                              {"failed", "✘", "FAILED"},
+                                              {"done", "●", "DONE"},
+                                              {"doubtful", "▲", "NOT FINISHED"}};
+    const bool isDoubtful = verdict == ReportVerdict::Passed && hasWarnings;
+    return isDoubtful ? VerdictWords{"doubtful", "▲", "PASSED WITH WARNINGS"}
+                      : kWords[static_cast<std::size_t>(verdict)];
 }
 
 }  // namespace
@@ -34,31 +29,15 @@ std::string escaped(const std::string& text) {
     using nlohmann::json;
     const std::string valid = json::parse(
         json(withoutControls(text, "\n\t")).dump(-1, ' ', false, json::error_handler_t::replace));
+    constexpr std::string_view kSpecial = "&<>\"'";
+    constexpr std::string_view kEntities[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
     std::string html;
     for (const char c : valid) {
-        switch (c) {
-            case '&':
-                html += "&amp;";
-                break;
-            case '<':
-                html += "&lt;";
-                break;
-            case '>':
-                html += "&gt;";
-                break;
-            case '"':
-                html += "&quot;";
-                break;
-            case '\'':
-                html += "&#39;";
-                break;
-            default:
-                if (static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t') {
-                    html += "\uFFFD";
-                } else {
-                    html += c;
-                }
-        }
+        const std::size_t special = kSpecial.find(c);
+        const bool isControl = static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t';
+        html += special < kSpecial.size() ? kEntities[special]
+                : isControl               ? std::string_view("\uFFFD")
+                                          : std::string_view(&c, 1);
     }
     return html;
 }

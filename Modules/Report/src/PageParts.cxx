@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
 
 namespace adaptiso {
@@ -15,17 +14,11 @@ struct OutcomeWords {
 };
 
 OutcomeWords wordsOf(ReportOutcome outcome) {
-    switch (outcome) {
-        case ReportOutcome::Passed:
-            return {"passed", "✔ holds"};
-        case ReportOutcome::Failed:
-            return {"failed", "✘ FAILED"};
-        case ReportOutcome::Noted:
-            return {"noted", "▲ noted"};
-        case ReportOutcome::Undecided:
-            return {"undecided", "– undecided"};
-    }
-    throw InternalError("wordsOf: unknown outcome");
+    static constexpr OutcomeWords kWords[] = {{"passed", "✔ holds"},
+                                              {"failed", "✘ FAILED"},
+                                              {"noted", "▲ noted"},
+                                              {"undecided", "– undecided"}};
+    return kWords[static_cast<std::size_t>(outcome)];
 }
 
 std::string pointText(const Vec3& rasMm) {

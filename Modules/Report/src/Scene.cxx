@@ -1,8 +1,6 @@
 #include "Scene.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace adaptiso {

@@ -1,7 +1,6 @@
 #include "Slices.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <utility>

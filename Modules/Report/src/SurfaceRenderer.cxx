@@ -7,7 +7,6 @@
 #include <numbers>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/PortableMath.h"

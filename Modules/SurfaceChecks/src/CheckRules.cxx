@@ -14,7 +14,7 @@ std::string_view toString(Profile profile) {
 CheckRules CheckRules::inUse() const {
     CheckRules rules = *this;
     rules.profile = profileInUse();
-    rules.minGapMm = minGapMm.value_or(kDefaultMinGapMm);
+    rules.minGapMm = minGapMm.value_or(kLeastGapMm);
     rules.minAngleDeg = minAngleDeg.value_or(kLeastAngleDeg);
     if (measuresWalls) rules.minWallMm = wallLimitMm();
     return rules;

@@ -539,7 +539,7 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
         checks.push_back(makeCheck(kMinGap, Outcome::Undecided,
                                    isOneEmpty(report) ? kNothingToMeasure : kNotDecided, rules));
     } else {
-        const double limit = rules.minGapMm.value_or(CheckRules::kDefaultMinGapMm);
+        const double limit = rules.minGapMm.value_or(CheckRules::kLeastGapMm);
         const bool isWide = report.gap.nearest.distanceMm >= limit;
         const bool holds = isWide && report.gap.isComplete;
         add(kMinGap, holds,

@@ -8,7 +8,6 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 
-#include <cmath>
 #include <cstring>
 #include <string>
 

@@ -9,8 +9,6 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
-#include <utility>
-
 #include "FilterRun.h"
 #include "adaptiso/Extraction/PointTransfer.h"
 #include "adaptiso/Extraction/Simplify.h"

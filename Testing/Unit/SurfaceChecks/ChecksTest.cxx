@@ -65,7 +65,7 @@ TEST(CheckRules, StandInTheTableOfTheirPage) {
 TEST(CheckRules, InUseFillInEveryDefault) {
     CheckRules rules;
     EXPECT_EQ(rules.inUse().profile, Profile::Print);
-    EXPECT_EQ(rules.inUse().minGapMm, CheckRules::kDefaultMinGapMm);
+    EXPECT_EQ(rules.inUse().minGapMm, CheckRules::kLeastGapMm);
     EXPECT_EQ(rules.inUse().minAngleDeg, CheckRules::kLeastAngleDeg);
     EXPECT_FALSE(rules.inUse().minWallMm);
     rules.isNested = rules.measuresWalls = true;

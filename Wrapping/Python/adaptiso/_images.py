@@ -4,7 +4,6 @@ an affine, uncopied where they can be."""
 from __future__ import annotations
 
 import contextlib
-import os
 import re
 import sys
 import threading
@@ -30,8 +29,6 @@ Affine = npt.NDArray[np.float64]
 
 #: Types of samples that are used as they are; others are converted.
 _NATIVE = frozenset("u1 i1 u2 i2 u4 i4 u8 i8 f4 f8".split())
-#: nibabel's classes, by the names of our own readers.
-_FORMATS = {"Nifti1Image": "NIfTI-1", "Nifti2Image": "NIfTI-2", "MGHImage": "MGH"}
 #: GDCM's switches are global: one DICOM at a time.
 _reading = threading.Lock()
 
@@ -115,9 +112,6 @@ def _read(file: Any, options: Mapping[str, Any] = {}) -> Tuple[Image, str]:
     """`read`, and how the header scales stored values ("": it does not)."""
     name = path("file", file)
     given = checked("read", options, "read")
-    if not hasattr(_adaptiso, "read_image"):
-        index = given.pop("volume_index", None)
-        return _read_by_nibabel(name, index, any(value is not False for value in given.values())), ""
     try:
         with _reading:
             array, affine, kind, warnings, scaling = _adaptiso.read_image(name, given)
@@ -140,40 +134,6 @@ def _in_python(message: str, name: str) -> str:
     for name, row in rows("read").items():
         message = re.sub(rf"--{row['name']}\b", f"{name}= of adaptiso.read", message)
     return message
-
-
-def _read_by_nibabel(name: str, volume_index: Optional[int], wants_more: bool) -> Image:
-    """Result of `read` in a package built without readers (ADAPTISO_PYTHON_READERS)."""
-    if wants_more:
-        raise Error(f"{name}: DICOM and Zarr are not read by this build of adaptiso")
-    if not os.path.exists(name):
-        raise Error(f"{name}: there is no such file")
-    try:
-        import nibabel
-    except ImportError:
-        raise Error(f"{name}: this build of adaptiso reads images by nibabel, which is not "
-                    "installed") from None
-    try:
-        image = nibabel.load(name)
-        stored = image.dataobj
-        shape, affine = stored.shape, affine_of(image.affine)
-        if len(shape) == 4 and (shape[3] == 1 or volume_index is not None):
-            stored = np.asanyarray(stored[..., volume_index or 0])
-        elif len(shape) != 3 or volume_index:
-            raise Error(f"{name}: has the shape {shape}; of a 4-D image give volume_index")
-        array = np.asanyarray(stored)
-        if array.dtype == np.float64 and image.get_data_dtype() != np.float64:
-            array = array.astype(np.float32)  # scaled: as adaptiso's own readers have it
-    except Error:
-        raise
-    except MemoryError:
-        raise
-    except Exception as error:
-        raise Error(f"{name}: {' '.join(str(error).split())}") from None
-    array = np.array(array, array.dtype.newbyteorder("="), order="F")
-    array.flags.writeable = False
-    kind = type(image).__name__
-    return Image(array, affine, [], _FORMATS.get(kind, kind))
 
 
 def base_name(file: str) -> str:

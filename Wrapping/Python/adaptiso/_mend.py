@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
+import json
+import re
+from typing import TYPE_CHECKING, Any, Dict, Optional, Sequence, Union
 
 from . import _adaptiso
 from ._adaptiso import Error
@@ -90,8 +92,14 @@ def mend(mesh: Any, faces: Any = None, *, around: Any = None, gap: Optional[floa
     if (around is None) != (gap is None):
         raise Error("around, gap: each needs the other")
     distance = 0 if gap is None else number("gap", gap, "a number above 0", lambda value: value > 0)
-    made, found = _adaptiso.mend_mesh(
+    made, text, warnings = _adaptiso.mend_mesh(
         data[0], checked("mend", options), None if around is None else data[1], distance,
         checked_threads(threads), checked_progress(progress))
-    warn(found["warnings"], "mend")
-    return Mesh._of(made, found)
+    warn(warnings, "mend")
+    return Mesh._of(made, {**json.loads(text, object_hook=_named), "warnings": warnings})
+
+
+def _named(found: Dict[str, Any]) -> Dict[str, Any]:
+    """Figures of adaptiso-mend's report by Python's names: "middleMm" is "middle"."""
+    return {re.sub("([A-Z])", r"_\1", re.sub("Mm2?$", "", key)).lower(): tuple(value) if key == "middleMm" else value
+            for key, value in found.items()}

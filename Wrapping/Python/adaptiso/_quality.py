@@ -174,8 +174,8 @@ def check(mesh: Any, faces: Any = None, profile: str = "print", *, input_coordin
     if isinstance(faces, str):
         faces, profile = None, faces
     mesh = whole(mesh, faces)
-    text = _adaptiso.check(mesh_data_of(mesh, True, stated_frames(input_coordinates, [mesh])[0]),
-                           word("profile", profile, PROFILES), checked("check", options),
+    rules = {"profile": word("profile", profile, PROFILES), **checked("check", options)}
+    text = _adaptiso.check(mesh_data_of(mesh, True, stated_frames(input_coordinates, [mesh])[0]), rules,
                            checked_threads(threads))
     return Check(json.loads(text))
 
@@ -229,9 +229,8 @@ def check_nested(meshes: Union[Sequence[Any], Mapping[str, Any]], profile: str =
     data = [mesh_data_of(mesh, not is_path(mesh), stated)
             for mesh, stated in zip(surfaces, stated_frames(input_coordinates, surfaces))]
     require_one_frame(data, surfaces, told)
-    text = _adaptiso.check_nested(
-        data, told, word("profile", profile, PROFILES), checked("check_nested", options),
-        checked_threads(threads))
+    rules = {"profile": word("profile", profile, PROFILES), **checked("check_nested", options)}
+    text = _adaptiso.check_nested(data, told, rules, checked_threads(threads))
     return Check(json.loads(text))
 
 

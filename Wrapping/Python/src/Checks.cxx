@@ -3,7 +3,6 @@
 #include <pybind11/stl.h>
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,9 +21,8 @@
 namespace adaptiso::python {
 namespace {
 
-CheckRules rulesOf(const std::string& profile, const py::dict& options) {
+CheckRules rulesOf(const py::dict& options) {
     CheckRules rules;
-    rules.profile = profileOf(profile);
     take(ruleOptions(), rules, options);
     rules.measuresWalls = rules.minWallMm.has_value();
     return rules;
@@ -35,9 +33,8 @@ void requireTriangles(const MeshData& data, const std::string& name) {
     if (data.mesh().triangles.empty()) throw InvalidInput(name + ": has no triangles");
 }
 
-std::string checkMesh(const MeshData& data, const std::string& profile, const py::dict& options,
-                      int threads) {
-    const CheckRules rules = rulesOf(profile, options);
+std::string checkMesh(const MeshData& data, const py::dict& options, int threads) {
+    const CheckRules rules = rulesOf(options);
     requireTriangles(data, "mesh");
     std::string json;
     runUnlocked(threads, [&] { json = dumped(surfaceVerdict(data.mesh(), rules)); });
@@ -45,9 +42,9 @@ std::string checkMesh(const MeshData& data, const std::string& profile, const py
 }
 
 std::string checkNested(const std::vector<std::shared_ptr<MeshData>>& meshes,
-                        const std::vector<std::string>& names, const std::string& profile,
-                        const py::dict& options, int threads) {
-    CheckRules rules = rulesOf(profile, options);
+                        const std::vector<std::string>& names, const py::dict& options,
+                        int threads) {
+    CheckRules rules = rulesOf(options);
     rules.isNested = true;
     std::vector<const TriangleMesh*> surfaces;
     for (std::size_t n = 0; n < meshes.size(); ++n) {
@@ -97,10 +94,9 @@ std::string compareMeshes(const MeshData& a, const MeshData& b, std::int64_t sam
 }  // namespace
 
 void declareChecks(py::module_& module) {
-    module.def("check", &checkMesh, py::arg("mesh"), py::arg("profile"), py::arg("options"),
-               py::arg("threads"));
+    module.def("check", &checkMesh, py::arg("mesh"), py::arg("options"), py::arg("threads"));
     module.def("check_nested", &checkNested, py::arg("meshes"), py::arg("names"),
-               py::arg("profile"), py::arg("options"), py::arg("threads"));
+               py::arg("options"), py::arg("threads"));
     module.def("compare", &compareMeshes, py::arg("a"), py::arg("b"), py::arg("samples"),
                py::arg("symmetric"), py::arg("threads"), py::arg("progress"));
 }

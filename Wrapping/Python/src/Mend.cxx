@@ -2,58 +2,36 @@
 
 #include <pybind11/stl.h>
 
-#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "Arrays.h"
 #include "Calls.h"
 #include "MeshData.h"
 #include "OptionRows.h"
+#include "Words.h"
 #include "adaptiso/Core/Errors.h"
-#include "adaptiso/Core/Warning.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
+#include "adaptiso/SurfacePipeline/MendJson.h"
 
 namespace adaptiso::python {
 namespace {
 
-py::list toList(const std::vector<MendedPlace>& places) {
-    py::list list;
-    for (const MendedPlace& place : places) {
-        py::dict each;
-        each["middle"] = py::make_tuple(place.middleMm.x, place.middleMm.y, place.middleMm.z);
-        each["span"] = place.spanMm;
-        each["area"] = place.areaMm2;
-        list.append(each);
-    }
-    return list;
-}
-
-py::dict toDict(const MendStatistics& statistics) {
-    py::dict found;
-    found["was_sound"] = statistics.wasSound;
-    found["degenerate_triangles"] = statistics.degenerateTriangles;
-    found["duplicate_triangles"] = statistics.duplicateTriangles;
-    found["merged_points"] = statistics.mergedPoints;
-    found["flipped_triangles"] = statistics.flippedTriangles;
-    found["border_edges"] = statistics.borderEdges;
-    found["bad_edges"] = statistics.badEdges;
-    found["bad_vertices"] = statistics.badVertices;
-    found["crossing_triangles"] = statistics.crossingTriangles;
-    found["handles"] = statistics.handles;
-    found["kept_triangles"] = statistics.keptTriangles;
-    found["cut_triangles"] = statistics.cutTriangles;
-    found["filled"] = toList(statistics.filled);
-    found["left_open"] = toList(statistics.leftOpen);
-    found["inner"] = toList(statistics.inner);
-    found["thin"] = toList(statistics.thin);
-    found["cut_handles"] = toList(statistics.cutHandles);
-    found["filled_handles"] = toList(statistics.filledHandles);
-    found["max_error"] = statistics.maxErrorMm;
-    found["result_to_input"] = statistics.resultToInputMm;
-    found["input_to_result"] = statistics.inputToResultMm;
+/// Keys as adaptiso-mend's report has them.
+Json foundJson(const MendStatistics& statistics, const NestedAround& nested, bool isAround) {
+    const double movedMm = nested.move.maximumMm;
+    Json found{{"wasSound", statistics.wasSound}};
+    found.update(mendFaultsJson(statistics));
+    found.update(mendPlacesJson(statistics));
+    found.update({{"keptTriangles", statistics.keptTriangles},
+                  {"cutTriangles", statistics.cutTriangles},
+                  {"maxErrorMm", statistics.maxErrorMm},
+                  {"resultToInputMm", statistics.resultToInputMm + movedMm},
+                  {"inputToResultMm", statistics.inputToResultMm + movedMm},
+                  {"gapMm", isAround ? Json(nested.gap.mm) : Json()},
+                  {"movedVertices", nested.move.movedVertices},
+                  {"largestMoveMm", movedMm}});
     return found;
 }
 
@@ -98,24 +76,9 @@ py::tuple mendMesh(const MeshData& data, MendOptions options, const Around& arou
     } catch (const InvalidInput& refusal) {
         throw InvalidInput(inWordsOfArguments(refusal.what()));
     }
-    auto made =
-        std::make_shared<MeshData>(MeshData::asStored(std::move(result.mesh), data.frame()));
-    if (data.image()) made->setImage(*data.image());
-    made->setFrameKnown(data.isFrameKnown());
-    result.statistics.resultToInputMm += nested.move.maximumMm;
-    result.statistics.inputToResultMm += nested.move.maximumMm;
-    py::dict found = toDict(result.statistics);
-    found["gap"] = around.fixed == nullptr ? py::object(py::none()) : py::cast(nested.gap.mm);
-    found["moved_vertices"] = nested.move.movedVertices;
-    found["largest_move"] = nested.move.maximumMm;
-    std::vector<Warning> warnings;
-    if (options.maxErrorMm) {
-        const auto warning = boundOverSize("max_error", *options.maxErrorMm,
-                                           norm(boundingBox(data.mesh()).size()), {});
-        if (warning) warnings.push_back(*warning);
-    }
-    found["warnings"] = warnings;
-    return py::make_tuple(std::move(made), found);
+    const Json found = foundJson(result.statistics, nested, around.fixed != nullptr);
+    return py::make_tuple(data.alike(std::move(result.mesh)), dumped(found),
+                          warningsOfBound(options.maxErrorMm, data.mesh()));
 }
 
 }  // namespace

@@ -180,8 +180,8 @@ std::shared_ptr<MeshData> MeshData::fromArrays(
 }
 
 std::shared_ptr<MeshData> MeshData::moved(const AffineTransform& transform) const {
-    auto data = std::make_shared<MeshData>(asStored(transformed(mesh_, transform), frame_));
-    data->setFrameKnown(isFrameKnown_);
+    auto data = alike(transformed(mesh_, transform));
+    data->image_.reset();
     requireFaultless(data->mesh_);
     return data;
 }
@@ -291,6 +291,13 @@ void MeshData::draw(const std::string& path) const {
     AtomicOutput output(path);
     output.writeText(drawViews(report, {.width = 1200, .height = 900}).front().png);
     AtomicOutput::commit({&output, 1});
+}
+
+std::vector<Warning> warningsOfBound(std::optional<double> maxErrorMm, const TriangleMesh& mesh) {
+    if (!maxErrorMm || mesh.points.empty()) return {};
+    const auto warning =
+        boundOverSize("max_error", *maxErrorMm, norm(boundingBox(mesh).size()), {});
+    return warning ? std::vector{*warning} : std::vector<Warning>();
 }
 
 std::pair<std::shared_ptr<MeshData>, std::vector<Warning>> readMeshData(

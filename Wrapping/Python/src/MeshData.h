@@ -83,6 +83,14 @@ public:
         return data;
     }
 
+    /// Points as they are, in this one's frame and of its image.
+    std::shared_ptr<MeshData> alike(TriangleMesh mesh) const {
+        auto data = std::make_shared<MeshData>(asStored(std::move(mesh), frame_));
+        data->image_ = image_;
+        data->isFrameKnown_ = isFrameKnown_;
+        return data;
+    }
+
     const TriangleMesh& mesh() const { return mesh_; }
     /// The surface with x and y turned, without normals: LPS mm of one in RAS.
     TriangleMesh lps() const;
@@ -142,6 +150,9 @@ private:
     std::optional<SurfaceHistory> history_;
     std::string report_;
 };
+
+/// That `max_error` is large for the mesh's size, if it is. \param maxErrorMm  none: not given
+std::vector<Warning> warningsOfBound(std::optional<double> maxErrorMm, const TriangleMesh& mesh);
 
 /// Reads a surface file: points in scanner RAS mm where the file says how to get there, else in the
 /// frame that it says, else as stored.

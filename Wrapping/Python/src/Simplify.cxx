@@ -4,16 +4,13 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "Arrays.h"
 #include "Calls.h"
 #include "MeshData.h"
 #include "OptionRows.h"
-#include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/PointTransfer.h"
 
 namespace adaptiso::python {
@@ -37,21 +34,12 @@ py::tuple simplifyMesh(const MeshData& data, SimplifyOptions options, int thread
     options.progress = watcher.callback();
     Simplified result;
     watcher.run(threads, [&] { result = simplify(data.mesh(), options); });
-    auto made =
-        std::make_shared<MeshData>(MeshData::asStored(std::move(result.mesh), data.frame()));
-    if (data.image()) made->setImage(*data.image());
-    made->setFrameKnown(data.isFrameKnown());
+    const auto made = data.alike(std::move(result.mesh));
     made->setErrorBoundMm(result.statistics.errorBoundMm);
     made->setRequestedBoundMm(options.maxErrorMm);
     py::dict found = toDict(result.statistics);
-    std::vector<Warning> warnings;
-    if (options.maxErrorMm && !data.mesh().points.empty()) {
-        const auto warning = boundOverSize("max_error", *options.maxErrorMm,
-                                           norm(boundingBox(data.mesh()).size()), {});
-        if (warning) warnings.push_back(*warning);
-    }
-    found["warnings"] = warnings;
-    return py::make_tuple(std::move(made), found);
+    found["warnings"] = warningsOfBound(options.maxErrorMm, data.mesh());
+    return py::make_tuple(made, found);
 }
 
 /// Where values at the vertices of `from` are to be read for those of `to`: corners of triangles

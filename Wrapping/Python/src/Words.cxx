@@ -9,17 +9,12 @@
 namespace adaptiso::python {
 
 CoordinateFrame frameOf(const std::string& word) {
-    return choose<CoordinateFrame>("frame", word,
-                                   {{"ras", CoordinateFrame::Ras},
-                                    {"lps", CoordinateFrame::Lps},
-                                    {"tkras", CoordinateFrame::TkRas},
-                                    {"voxel", CoordinateFrame::Voxel}});
-}
-
-Profile profileOf(const std::string& word) {
-    return choose<Profile>(
-        "profile", word,
-        {{"bem", Profile::Bem}, {"print", Profile::Print}, {"view", Profile::View}});
+    using enum CoordinateFrame;
+    std::vector<std::pair<const char*, CoordinateFrame>> words;
+    for (const CoordinateFrame frame : {Ras, Lps, TkRas, Voxel}) {
+        words.emplace_back(frameWord(frame).data(), frame);
+    }
+    return choose("frame", word, words);
 }
 
 std::optional<CoordinateFrame> frameOf(const std::optional<std::string>& word) {

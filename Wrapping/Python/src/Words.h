@@ -31,7 +31,6 @@ Value choose(const char* argument, const std::string& word,
 
 CoordinateFrame frameOf(const std::string& word);
 std::optional<CoordinateFrame> frameOf(const std::optional<std::string>& word);
-Profile profileOf(const std::string& word);
 
 /// An entry of adaptiso-check's `surfaces`: verdict and facts.
 Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules);

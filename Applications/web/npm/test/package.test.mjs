@@ -83,7 +83,7 @@ describe("mesh", () => {
     for (const { mesh: other } of all) assert.deepEqual(other, all[0].mesh);
   });
   it("gives arrays and files the same surface, and options.args to the program", async () => {
-    const options = { iso: 100, triangles: 500, args: ["--smooth", "0.7"] };
+    const options = { iso: 100, triangles: 500, smoothMm: 0.7, args: ["--largest"] };
     const [arrays, file] = await Promise.all([mesh(ball(12), options), mesh({ path: "./in/ball.nii", bytes: nifti1(ball(12)) }, options)]);
     assert.deepEqual(file.mesh, arrays.mesh);
     assert.ok(file.mesh.triangles.length / 3 <= 500);
@@ -132,6 +132,7 @@ describe("mesh", () => {
   it("throws the program's own line and code", async () => {
     await refused(mesh({ path: "text.nii", bytes: new TextEncoder().encode("no image") }), 3, /^adaptiso-mesh: text\.nii: /);
     await refused(mesh(ball(12), { iso: 100, args: ["--nothing"] }), 2, /^adaptiso-mesh: .*--nothing/);
+    await refused(mesh(ball(12), { iso: 100, nothing: 1 }), 2, /^adaptiso-mesh: .*--nothing/);
     await refused(mesh(ball(12), { iso: 100, args: ["--help"] }), 2, /^adaptiso-mesh: wrote no result/);
   });
 });

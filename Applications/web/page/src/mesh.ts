@@ -56,8 +56,7 @@ export class MeshTab {
     slider.min = String(facts.histogram?.lower ?? facts.minimum);
     slider.max = String(facts.histogram?.upper ?? facts.maximum);
     slider.step = String((Number(slider.max) - Number(slider.min)) / 500 || 1);
-    const least = Math.min(...facts.geometry.spacingMm);
-    for (const id of ["max-error", "labels-error"]) byId<HTMLInputElement>(id).placeholder = String(Number((0.15 * least).toPrecision(3)));
+    for (const id of ["max-error", "labels-error"]) byId<HTMLInputElement>(id).placeholder = String(Number(facts.defaultErrorMm.toPrecision(3)));
     this.histogram.show(facts);
     this.setIsovalue(this.rounded(facts.otsu ?? (facts.minimum + facts.maximum) / 2));
   }

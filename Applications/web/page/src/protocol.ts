@@ -43,6 +43,7 @@ export interface RunResult {
 export interface ImageFacts {
   format: string;
   geometry: { sizeVoxels: number[]; spacingMm: number[]; originMm: number[] };
+  defaultErrorMm: number;
   orientation: string;
   type: string;
   bytes: number;

@@ -1,7 +1,6 @@
 #include "adaptive/AdaptiveMethod.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "adaptiso/Core/Errors.h"

@@ -309,40 +309,25 @@ BoxCase makeCase(unsigned corners, unsigned joined) {
 
 SquareIsoLines squareIsoLines(unsigned corners, bool joined) {
     constexpr std::uint8_t kBottom = 0, kRight = 1, kTop = 2, kLeft = 3;
-    switch (corners) {
-        case 0b0001:
-            return {1, {{{kLeft, kBottom}, {}}}};
-        case 0b0010:
-            return {1, {{{kBottom, kRight}, {}}}};
-        case 0b0011:
-            return {1, {{{kLeft, kRight}, {}}}};
-        case 0b0100:
-            return {1, {{{kTop, kLeft}, {}}}};
-        case 0b0101:
-            return {1, {{{kTop, kBottom}, {}}}};
-        case 0b0110:
-            return joined ? SquareIsoLines{2, {{{kBottom, kLeft}, {kTop, kRight}}}}
-                          : SquareIsoLines{2, {{{kBottom, kRight}, {kTop, kLeft}}}};
-        case 0b0111:
-            return {1, {{{kTop, kRight}, {}}}};
-        case 0b1000:
-            return {1, {{{kRight, kTop}, {}}}};
-        case 0b1001:
-            return joined ? SquareIsoLines{2, {{{kRight, kBottom}, {kLeft, kTop}}}}
-                          : SquareIsoLines{2, {{{kLeft, kBottom}, {kRight, kTop}}}};
-        case 0b1010:
-            return {1, {{{kBottom, kTop}, {}}}};
-        case 0b1011:
-            return {1, {{{kLeft, kTop}, {}}}};
-        case 0b1100:
-            return {1, {{{kRight, kLeft}, {}}}};
-        case 0b1101:
-            return {1, {{{kRight, kBottom}, {}}}};
-        case 0b1110:
-            return {1, {{{kBottom, kLeft}, {}}}};
-        default:
-            return {};
-    }
+    if (joined && corners == 0b0110) return {2, {{{kBottom, kLeft}, {kTop, kRight}}}};
+    if (joined && corners == 0b1001) return {2, {{{kRight, kBottom}, {kLeft, kTop}}}};
+    static constexpr SquareIsoLines kLines[] = {{},
+                                                {1, {{{kLeft, kBottom}, {}}}},
+                                                {1, {{{kBottom, kRight}, {}}}},
+                                                {1, {{{kLeft, kRight}, {}}}},
+                                                {1, {{{kTop, kLeft}, {}}}},
+                                                {1, {{{kTop, kBottom}, {}}}},
+                                                {2, {{{kBottom, kRight}, {kTop, kLeft}}}},
+                                                {1, {{{kTop, kRight}, {}}}},
+                                                {1, {{{kRight, kTop}, {}}}},
+                                                {2, {{{kLeft, kBottom}, {kRight, kTop}}}},
+                                                {1, {{{kBottom, kTop}, {}}}},
+                                                {1, {{{kLeft, kTop}, {}}}},
+                                                {1, {{{kRight, kLeft}, {}}}},
+                                                {1, {{{kRight, kBottom}, {}}}},
+                                                {1, {{{kBottom, kLeft}, {}}}},
+                                                {}};
+    return kLines[corners];
 }
 
 const BoxCases& BoxCases::instance() {

@@ -1,7 +1,6 @@
 #include "filling/FillLoops.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"

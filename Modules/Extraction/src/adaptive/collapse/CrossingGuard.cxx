@@ -1,7 +1,6 @@
 #include "adaptive/collapse/CrossingGuard.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "adaptiso/Core/Buckets.h"

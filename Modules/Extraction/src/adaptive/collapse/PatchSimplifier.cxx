@@ -1,7 +1,6 @@
 #include "adaptive/collapse/PatchSimplifier.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "adaptive/Parameters.h"
 

@@ -76,14 +76,14 @@ SizeLimits sizeLimitsOf(Profile profile);
 struct CheckRules {
     bool isNested = false;              ///< they lie in each other, the innermost first
     std::optional<Profile> profile;     ///< default: Bem when nested, else Print
-    std::optional<double> minGapMm;     ///< default: kDefaultMinGapMm, required of Bem only
+    std::optional<double> minGapMm;     ///< default: kLeastGapMm, required of Bem only
     std::optional<double> minAngleDeg;  ///< default: kLeastAngleDeg, required of Bem only
     std::optional<double> maxOffMm;     ///< default: half a voxel on the mean
     bool measuresWalls = false;         ///< costs more than all other checks of a surface
     std::optional<double> minWallMm;    ///< default: kDefaultMinWallMm, and not required
     std::int64_t maxPairs = 1000;       ///< of triangles that cross, to list
 
-    static constexpr double kDefaultMinGapMm = 0.5;  // thinner than any bone of the skull
+    static constexpr double kLeastGapMm = 0.5;  // thinner than any bone of the skull
     static constexpr double kLeastAngleDeg = 1;      // slivers that only bad remeshing leaves
 
     /// Two lines of the usual nozzle of 0.4 mm, the least that guides for filament printers name.
