@@ -1,6 +1,7 @@
 #include "Common/CommonFrame.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
@@ -158,7 +159,11 @@ std::optional<CoordinateFrame> statedFrame(const std::vector<CoordinateFrame>& s
 }
 
 bool areOfOneFormat(const NamedMesh& a, const NamedMesh& b) {
-    return a.file.format == b.file.format;
+    const auto isOfPrinters = [](const NamedMesh& mesh) {
+        const std::string_view extension = mesh.file.format->extensions.front();
+        return extension == ".stl" || extension == ".3mf";
+    };
+    return a.file.format == b.file.format || (isOfPrinters(a) && isOfPrinters(b));
 }
 
 CommonFrame bringToOneFrame(std::span<NamedMesh> meshes, const std::optional<ImageGeometry>& image,

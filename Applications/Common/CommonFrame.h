@@ -67,14 +67,15 @@ struct NamedMesh {
     MeshFile file;
 };
 
-/// Files of one format that say no frame are taken to share it.
+/// Files of one format that say no frame are taken to share it, and so are the printers' formats,
+/// STL and 3MF.
 bool areOfOneFormat(const NamedMesh& a, const NamedMesh& b);
 
 /// Brings surfaces to one frame: afterwards all meshes are in LPS mm, or, when the common frame is
 /// TkRas, in the LPS of a stand-in volume, which differs by a rigid move.
 ///
 /// Surfaces that do not say their frame are taken to share one, with a warning, where none does and
-/// all are of one format. Surfaces in tkRAS that do not all say of which volume are taken for
+/// all areOfOneFormat(). Surfaces in tkRAS that do not all say of which volume are taken for
 /// surfaces of the same one.
 /// \param image  the volume that voxel indices, and tkRAS without a volume of its own, refer to.
 ///               tkRAS is then that of the image if it is stored as FreeSurfer stores images, else
