@@ -120,6 +120,15 @@ void placeLooseTkRas(std::span<NamedMesh> meshes, const std::string& remedy, Com
                               " in tkRAS mm; taken for surfaces of one volume"});
 }
 
+bool isNamedLikeMesh(const std::filesystem::path& path) {
+    try {
+        findMeshFormat(path);
+    } catch (const InvalidInput&) {
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 void declareInputCoordinates(const OptionGroup& group, std::vector<CoordinateFrame>& stated,
@@ -198,15 +207,17 @@ CoordinateFrame outputFrame(std::optional<CoordinateFrame> wanted, const MeshFor
     return frame;
 }
 
+bool isFolder(const std::filesystem::path& path) {
+    std::error_code error;
+    if (path.empty() || !path.has_filename()) return !path.empty();
+    return std::filesystem::is_directory(path, error) && !isNamedLikeMesh(path);
+}
+
 void requireFolderName(const std::string& option, const std::filesystem::path& folder,
                        const std::string& instead) {
     std::error_code error;
     if (folder.empty() || std::filesystem::is_directory(folder, error)) return;
-    try {
-        findMeshFormat(folder);
-    } catch (const InvalidInput&) {
-        return;
-    }
+    if (!isNamedLikeMesh(folder)) return;
     throw UsageError(option + " " + folder.string() + ": is a folder to make, and named like a " +
                      "file; " + instead);
 }

@@ -94,6 +94,9 @@ const MeshFormat& meshFormatOf(const std::filesystem::path& file);
 /// \throws UsageError  the format cannot hold voxel indices
 CoordinateFrame outputFrame(std::optional<CoordinateFrame> wanted, const MeshFormat& format);
 
+/// It ends with a slash, or is a folder that is there and not named like a file of meshes.
+bool isFolder(const std::filesystem::path& path);
+
 /// Refuses a folder to make, the value of `option`, that is named like a file of meshes.
 /// \param instead  what to give instead \throws UsageError
 void requireFolderName(const std::string& option, const std::filesystem::path& folder,

@@ -30,7 +30,7 @@ WRONG = [
     (USAGE, "one of --t1, --labels", BEM, ()),
     (USAGE, "MESH is missing: the surface", SIMPLIFY, ()),
     (USAGE, "--max-error, --triangles or --reduction is missing", SIMPLIFY, ("a.off",)),
-    (USAGE, "--output is missing: the file", SIMPLIFY, ("a.off", "--max-error", "1")),
+    (USAGE, "--output is missing: a folder", SIMPLIFY, ("a.off", "a.off", "--max-error", "1")),
     (USAGE, "--iso: its value is missing; give V|auto", MESH, ("ball.nii", "--iso")),
     (USAGE, "--json: its value is missing; give FILE", CHECK, ("a.off", "--json")),
     (USAGE, "--output: its value is missing; --json is an option", MESH,
