@@ -198,14 +198,11 @@ std::string failureText(const LabelsRun& run) {
     return text;
 }
 
-void writePage(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeView& map) {
+/// \param shown  the image behind the regions: of --volume, or the map
+void writePage(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeView& shown) {
     const LabelsOptions& options = run.options;
-    std::optional<ReadVolume> behind;
-    if (!options.volume.empty()) behind = readImage(options.volume, {});
     const fs::path& file = options.volume.empty() ? options.input : options.volume;
-    run.writePage([&] {
-        return makeReport(run, surfaces, baseName(file), behind ? behind->volume.view() : map);
-    });
+    run.writePage([&] { return makeReport(run, surfaces, baseName(file), shown); });
 }
 
 /// Each input as a run of its own. \return an exit code
@@ -242,6 +239,10 @@ int runLabels(const LabelsOptions& given) {
     checkOutputs(run);
     requireMesher(options.tetrahedra);
 
+    std::optional<ReadVolume> behind;
+    if (!options.volume.empty()) {
+        behind = run.stage("read", [&] { return readImage(options.volume, {}); });
+    }
     LabelCensus census;
     const Volume volume = run.stage("read", [&] { return readMap(options, run, census); });
     const VolumeView& map = volume.view();
@@ -281,7 +282,7 @@ int runLabels(const LabelsOptions& given) {
             run.files = folder->files();
         });
     }
-    if (options.report.isWanted()) writePage(run, surfaces, map);
+    if (options.report.isWanted()) writePage(run, surfaces, behind ? behind->volume.view() : map);
     if (!run.holdsPromises()) {
         run.verdict = {kExitCheckFailed, baseName(options.input) +
                                              ": its walls do not keep their promises, so nothing "

@@ -216,7 +216,11 @@ class OutputTest(LabelsTest):
 
     def test_another_image_behind_the_regions(self):
         write_nifti(self.path("t1.nii"), Image((16, 14, 12), "h", list(range(16 * 14 * 12))))
-        self.labels("boxes.nii", "-o", "out", "--report", "page.html", "--volume", "t1.nii", "-q")
+        self.path("boxes.tsv").write_text("index\tname\n1\touter\n7\tinner\n")
+        self.labels("boxes.nii", "-o", "out", "--report", "page.html", "--volume", "t1.nii", "-q", "--labels", "7")
+        self.assertIn("outer (1) ", self.path("page.html").read_text())  # a neighbour that is not wanted
+        self.path("broken.nii").write_text("no map")
+        self.refused(BAD_INPUT, "none.nii", "broken.nii", "-o", "two", "--report", "p.html", "--volume", "none.nii")
         self.refused(USAGE, "--volume: is shown on the page", "boxes.nii", "-o", "two", "--volume",
                      "t1.nii")
 
