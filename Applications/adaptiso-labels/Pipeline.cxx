@@ -22,6 +22,7 @@
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Files/AtomicOutput.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Scene.h"
 
 namespace adaptiso::labels {
@@ -164,6 +165,10 @@ LabelComplex extract(const VolumeView& map, LabelsRun& run) {
     LabelResult result =
         naming(baseName(options.input), [&] { return extractLabels(map, extraction); });
     run.statistics = result.statistics;
+    const TriangleMesh walls{result.complex.points, {}, {}};
+    run.scale = chooseScale(options.scale, walls,
+                            lpsToFrame(run.frame, frameVolume(run.frame, run.map.geometry)),
+                            baseName(run.folder));
     run.points = std::ssize(result.complex.points);
     run.triangles = std::ssize(result.complex.triangles);
     return std::move(result.complex);
@@ -177,6 +182,19 @@ void measure(const LabelComplex& complex, LabelsRun& run) {
             region->measure = std::move(measure);
         }
     }
+}
+
+/// Brings figures of the scan to those of the file.
+void scaleFigures(LabelsRun& run) {
+    const double factor = run.scale, square = factor * factor;
+    run.statistics.errorBoundMm *= factor;
+    run.roundingMm *= factor;
+    for (Region& region : run.regions) {
+        region.measure.volumeMm3 *= square * factor;
+        region.measure.areaMm2 *= square;
+        for (RegionContact& contact : region.measure.neighbours) contact.areaMm2 *= square;
+    }
+    noteScale(factor, baseName(run.folder), run.warnings);
 }
 
 /// Where a count could not be met. With --max-error as well the bound may end it before: that was
@@ -222,7 +240,8 @@ const MeshFormat* sceneFormatOf(const fs::path& output) {
     for (const MeshFormat& format : meshFormats()) {
         const bool isMeant =
             std::ranges::find(format.extensions, extension) != format.extensions.end();
-        if (isMeant && holdsScene(format) && !fs::is_directory(output, error)) return &format;
+        const bool isOne = holdsScene(format) || extension == ".stl";
+        if (isMeant && isOne && !fs::is_directory(output, error)) return &format;
     }
     return nullptr;
 }
@@ -235,6 +254,7 @@ int runLabels(const LabelsOptions& given) {
     run.isScene = run.leavesGiftiOut = scene != nullptr;
     run.format = scene != nullptr ? scene : &findMeshFormat("region" + options.format);
     run.frame = outputFrame(options.frame, *run.format);
+    checkScale(options.scale, *run.format, options.frame);
     run.stage("read", [&] { findMasks(options, run); });
     checkOutputs(run);
     requireMesher(options.tetrahedra);
@@ -264,6 +284,7 @@ int runLabels(const LabelsOptions& given) {
     if (options.tetrahedra.isRequested() && run.holdsPromises()) {
         run.stage("tetrahedra", [&] { makeTetrahedra(complex, run); });
     }
+    scaleFigures(run);
     warnOfCount(run);
     if (!run.leavesGiftiOut && !fitsGifti(run)) {
         run.warnings.push_back({"file-left-out",

@@ -76,6 +76,7 @@ struct LabelsRun : ProgramRun {
     bool isScene = false;          ///< it is one file of all regions
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
+    double scale = 1;  ///< of the file's coordinates, and of all lengths, areas and volumes here
     MapSummary map{};
     JoinedMasks joined{};
     LabelIds ids{};

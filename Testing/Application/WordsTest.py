@@ -90,8 +90,8 @@ WRONG = [
      ("--t1", "ball.nii", "-o", "m", "--conductivity", "0.3,", "0.006", "0.3")),
     (BAD_INPUT, "--log ball.nii: exists and is no log; name a new file", MESH, (*BALL, "--log", "ball.nii")),
     # a folder that is named like a file
-    (USAGE, r"--output bones.stl: is a folder to make.*-o bones --format stl", "adaptiso-labels",
-     ("ball.nii", "-o", "bones.stl")),
+    (USAGE, r"--output bones.ply: is a folder to make.*-o bones --format ply", "adaptiso-labels",
+     ("ball.nii", "-o", "bones.ply")),
     (USAGE, r"--output m.gii: is a folder to make.*-o model", BEM, ("--t1", "ball.nii", "-o", "m.gii")),
     (USAGE, r"--output-dir o.ply: is a folder to make", MESH, (*BALL, "--output-dir", "o.ply")),
     # options of another format

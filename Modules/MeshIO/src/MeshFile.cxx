@@ -247,6 +247,17 @@ bool holdsScene(const MeshFormat& format) {
 void writeScene(std::vector<ScenePart> parts, const std::filesystem::path& path,
                 const MeshWriteOptions& options) {
     const MeshFormat& format = findMeshFormat(path);
+    if (!holdsScene(format)) {
+        TriangleMesh whole;
+        for (const auto& [name, color, mesh] : parts) {
+            const auto first = static_cast<VertexId>(whole.points.size());
+            whole.points.insert(whole.points.end(), mesh.points.begin(), mesh.points.end());
+            for (const Triangle& t : mesh.triangles) {
+                whole.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+            }
+        }
+        return writeMesh(whole, path, options);
+    }
     std::vector<meshio::MeshPart> encoded;
     for (ScenePart& part : parts) {
         requireWritable(part.mesh, format, options, path.string());
