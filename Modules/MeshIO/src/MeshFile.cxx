@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <set>
 
 #include "Bytes.h"
 #include "Codecs.h"
@@ -154,6 +155,24 @@ void scaleToUnitLength(std::vector<Normal>& normals) {
         const Vec3 v = toVec3(normal);
         if (std::abs(squaredNorm(v) - 1) > kFloatSlack) normal = toNormal(v);
     }
+}
+
+/// ", meshes/*.stl" of a folder that holds such files; else empty.
+std::string surfacesIn(const std::filesystem::path& folder) {
+    std::set<std::string> extensions;
+    std::error_code error;
+    for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end;
+         at.increment(error)) {
+        std::error_code unknown;
+        if (at->is_regular_file(unknown)) extensions.insert(at->path().extension().string());
+    }
+    for (const MeshFormat& format : meshFormats()) {
+        for (const std::string_view extension : format.extensions) {
+            if (!extensions.contains(std::string(extension))) continue;
+            return ", " + (folder / ("*" + std::string(extension))).string();
+        }
+    }
+    return {};
 }
 
 constexpr std::string_view kGzipMagic = "\x1F\x8B";
@@ -317,9 +336,8 @@ MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& opti
     const std::string name = path.string();
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) {
-        throw FileError(name +
-                        ": this is a folder, not a surface; give the files in it (of images "
-                        "adaptiso-mesh makes surfaces)");
+        throw FileError(name + ": this is a folder, not a surface; give the files in it" +
+                        surfacesIn(path) + " (of images adaptiso-mesh makes surfaces)");
     }
     // images may be large: the head is enough
     const std::filesystem::path file = meshio::fiffPart(path).first;
