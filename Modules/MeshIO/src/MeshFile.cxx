@@ -158,7 +158,7 @@ void scaleToUnitLength(std::vector<Normal>& normals) {
 }
 
 /// ", meshes/*.stl" of a folder that holds such files; else empty.
-std::string surfacesIn(const std::filesystem::path& folder) {
+std::string filesToGive(const std::filesystem::path& folder) {
     std::set<std::string> extensions;
     std::error_code error;
     for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end;
@@ -337,7 +337,7 @@ MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& opti
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) {
         throw FileError(name + ": this is a folder, not a surface; give the files in it" +
-                        surfacesIn(path) + " (of images adaptiso-mesh makes surfaces)");
+                        filesToGive(path) + " (of images adaptiso-mesh makes surfaces)");
     }
     // images may be large: the head is enough
     const std::filesystem::path file = meshio::fiffPart(path).first;
