@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "Common/CommonFrame.h"
 #include "Common/Naming.h"
@@ -66,6 +67,17 @@ void refuseOutputAsInput(const std::vector<std::filesystem::path>& inputs,
     if (isImage || last.empty() || std::filesystem::exists(last, error)) return;
     throw UsageError(last.string() + ": there is no such input; an output is given as -o " +
                      shellQuoted(last.string()));
+}
+
+void takeFolder(std::filesystem::path& output, BatchOptions& options) {
+    if (!isFolder(output)) return;
+    if (!options.outputFolder.empty()) {
+        throw UsageError("--output " + output.string() +
+                         ": is a folder, and --output-dir names one; give one of them");
+    }
+    options.outputFolder = std::exchange(output, {});
+    std::erase_if(options.runOptions,
+                  [](const std::string& option) { return option.starts_with("--output="); });
 }
 
 void keepRunOptions(const CLI::App& app, BatchOptions& options) {

@@ -46,6 +46,10 @@ void checkPlaceholders(const std::vector<std::pair<const char*, std::filesystem:
 void refuseOutputAsInput(const std::vector<std::filesystem::path>& inputs,
                          const std::filesystem::path& output, const BatchOptions& batch);
 
+/// An --output that names a folder is what --output-dir is. \pre keepRunOptions()
+/// \throws UsageError  both are given
+void takeFolder(std::filesystem::path& output, BatchOptions& options);
+
 /// Fills `options.runOptions` from what was parsed. \pre parsing is done
 void keepRunOptions(const CLI::App& app, BatchOptions& options);
 

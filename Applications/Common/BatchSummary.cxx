@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "adaptiso/Core/Phrases.h"
@@ -85,13 +84,14 @@ SummaryRow recordRow(const RunRecord& record) {
     }
     row.date = record.date;
     row.says = record.error.empty() ? record.says : record.error;
-    row.state = record.hasPassed() ? RunState::Done : RunState::Failed;
-    if (!record.hasPassed()) row.reason = reasonOf(row.says, record.files);
-    std::set<std::string> codes;
     for (const Warning& warning : record.warnings) {
-        if (!isNote(warning)) codes.insert(warning.code);
+        if (!isNote(warning)) row.warnings.push_back(warning);
     }
-    row.warnings.assign(codes.begin(), codes.end());
+    row.state = !record.isFinished()   ? RunState::Failed
+                : !record.hasPassed()  ? RunState::CheckFailed
+                : row.warnings.empty() ? RunState::Done
+                                       : RunState::Warned;
+    if (!record.hasPassed()) row.reason = reasonOf(row.says, record.files);
     addVolumes(record, row);
     return row;
 }
@@ -115,7 +115,7 @@ SummaryRow summaryRow(const fs::path& file, const RunRecord& record) {
     const std::string changes = changesOf(record, folder);
     if (changes.empty()) return row;
     row.says = changes + (row.says.empty() ? "" : " (" + row.says + ")");
-    if (row.state == RunState::Failed) return row;
+    if (!record.hasPassed()) return row;
     row.state = RunState::Changed;
     row.reason = "a file is gone or has changed";
     return row;
@@ -140,7 +140,7 @@ std::vector<SummaryRow> summaryRows(const fs::path& folder,
     }
     std::vector<SummaryRow> rows;
     for (auto& [file, row] : byFile) rows.push_back(std::move(row));
-    std::ranges::stable_sort(rows, {}, &SummaryRow::state);
+    sortByNeed(rows);
     return rows;
 }
 

@@ -1,6 +1,7 @@
 #include "Common/CommonFrame.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "Common/Naming.h"
 #include "Common/OptionValues.h"
@@ -120,6 +121,15 @@ void placeLooseTkRas(std::span<NamedMesh> meshes, const std::string& remedy, Com
                               " in tkRAS mm; taken for surfaces of one volume"});
 }
 
+bool isNamedLikeMesh(const std::filesystem::path& path) {
+    try {
+        findMeshFormat(path);
+    } catch (const InvalidInput&) {
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 void declareInputCoordinates(const OptionGroup& group, std::vector<CoordinateFrame>& stated,
@@ -168,7 +178,11 @@ std::string fileText(const std::filesystem::path& file, const MeshFormat& format
 }
 
 bool areOfOneFormat(const NamedMesh& a, const NamedMesh& b) {
-    return a.file.format == b.file.format;
+    const auto isOfPrinters = [](const NamedMesh& mesh) {
+        const std::string_view extension = mesh.file.format->extensions.front();
+        return extension == ".stl" || extension == ".3mf";
+    };
+    return a.file.format == b.file.format || (isOfPrinters(a) && isOfPrinters(b));
 }
 
 CommonFrame bringToOneFrame(std::span<NamedMesh> meshes, const std::optional<ImageGeometry>& image,
@@ -203,15 +217,17 @@ CoordinateFrame outputFrame(std::optional<CoordinateFrame> wanted, const MeshFor
     return frame;
 }
 
+bool isFolder(const std::filesystem::path& path) {
+    std::error_code error;
+    if (path.empty() || !path.has_filename()) return !path.empty();
+    return std::filesystem::is_directory(path, error) && !isNamedLikeMesh(path);
+}
+
 void requireFolderName(const std::string& option, const std::filesystem::path& folder,
                        const std::string& instead) {
     std::error_code error;
     if (folder.empty() || std::filesystem::is_directory(folder, error)) return;
-    try {
-        findMeshFormat(folder);
-    } catch (const InvalidInput&) {
-        return;
-    }
+    if (!isNamedLikeMesh(folder)) return;
     throw UsageError(option + " " + folder.string() + ": is a folder to make, and named like a " +
                      "file; " + instead);
 }

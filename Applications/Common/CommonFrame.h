@@ -73,14 +73,15 @@ struct NamedMesh {
     MeshFile file;
 };
 
-/// Files of one format that say no frame are taken to share it.
+/// Files of one format that say no frame are taken to share it, and so are the printers' formats,
+/// STL and 3MF.
 bool areOfOneFormat(const NamedMesh& a, const NamedMesh& b);
 
 /// Brings surfaces to one frame: afterwards all meshes are in LPS mm, or, when the common frame is
 /// TkRas, in the LPS of a stand-in volume, which differs by a rigid move.
 ///
 /// Surfaces that do not say their frame are taken to share one, with a warning, where none does and
-/// all are of one format. Surfaces in tkRAS that do not all say of which volume are taken for
+/// all areOfOneFormat(). Surfaces in tkRAS that do not all say of which volume are taken for
 /// surfaces of the same one.
 /// \param image  the volume that voxel indices, and tkRAS without a volume of its own, refer to.
 ///               tkRAS is then that of the image if it is stored as FreeSurfer stores images, else
@@ -98,6 +99,9 @@ const MeshFormat& meshFormatOf(const std::filesystem::path& file);
 /// The frame of a file to write: `wanted`, or the format's own.
 /// \throws UsageError  the format cannot hold voxel indices
 CoordinateFrame outputFrame(std::optional<CoordinateFrame> wanted, const MeshFormat& format);
+
+/// It ends with a slash, or is a folder that is there and not named like a file of meshes.
+bool isFolder(const std::filesystem::path& path);
 
 /// Refuses a folder to make, the value of `option`, that is named like a file of meshes.
 /// \param instead  what to give instead \throws UsageError

@@ -49,6 +49,23 @@ std::string inputStem(const fs::path& input) {
     return name;
 }
 
+std::size_t twoPartExtension(const std::string& name) {
+    constexpr std::array<std::string_view, 4> kExtensions{".surf.gii", ".shape.gii", ".func.gii",
+                                                          ".label.gii"};
+    const std::string lower = lowerCase(name);
+    for (const std::string_view extension : kExtensions) {
+        if (lower.size() > extension.size() && lower.ends_with(extension)) return extension.size();
+    }
+    return 0;
+}
+
+fs::path insertBeforeExtension(const fs::path& path, const std::string& text) {
+    std::string name = path.filename().string();
+    const std::size_t two = twoPartExtension(name);
+    name.insert(two > 0 ? name.size() - two : path.stem().string().size(), text);
+    return path.parent_path() / name;
+}
+
 std::string shellQuoted(const std::string& text) {
     constexpr std::string_view kPlain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+,:@%=";

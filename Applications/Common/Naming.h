@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -23,6 +24,14 @@ std::string replaced(std::string text, std::string_view place, std::string_view 
 /// "scans/brain.nii.gz"; the folder's own name of a folder, however it is written, without
 /// ".zarr" or ".ome.zarr".
 std::string inputStem(const std::filesystem::path& input);
+
+/// Length of an extension of two parts, as GIFTI's are: of ".surf.gii", ".shape.gii", ".func.gii",
+/// ".label.gii"; 0 without one.
+std::size_t twoPartExtension(const std::string& name);
+
+/// "scans/lh-iso50.surf.gii" of "scans/lh.surf.gii".
+std::filesystem::path insertBeforeExtension(const std::filesystem::path& path,
+                                            const std::string& text);
 
 /// The placeholder for bidsLabel() of an isovalue in a file's name.
 inline constexpr std::string_view kIsoLabel = "{isolabel}";

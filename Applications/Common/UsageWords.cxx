@@ -252,6 +252,10 @@ void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* arg
         if (value.starts_with("--") && optionNamed(app, beforeEquals(value)) != nullptr) {
             refuse("its value is missing; " + std::string(value) + " is an option");
         }
+        if (!hasOwn && value.starts_with("--") && value != "--") {
+            refuse("its value is missing; one that begins with dashes is given as " +
+                   nameOf(*option) + "=" + shellQuoted(std::string(value)));
+        }
         if (!hasOwn) refuseBlanks(*option, {argv + n, static_cast<std::size_t>(argc - n)});
         for (int more = 1; !hasOwn && more < option->get_items_expected_max() && n + 1 < argc &&
                            argv[n + 1][0] != '-';

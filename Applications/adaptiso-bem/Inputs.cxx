@@ -113,6 +113,7 @@ HeadBoundaries boundariesFromImages(BemRun& run, const BemHooks& hooks) {
         }
     });
     run.model.pial = images.brain.pial;
+    readSources(run);
     return boundariesIn(images, run, hooks);
 }
 

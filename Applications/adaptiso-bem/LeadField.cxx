@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "Common/RunApp.h"
 #include "Run.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/BemFiles.h"
 
@@ -156,20 +158,20 @@ std::string versionIn(const std::string& printed) {
 
 }  // namespace
 
-void requireSolver(const BemModelOptions& options) {
-    if (options.leadField.empty()) return;
+std::string missingSolver(const BemModelOptions& options) {
+    if (options.leadField.empty()) return "";
     temporaryFolder();  // there must be one
-    const std::string option = "--lead-field " + options.leadField + ": ";
-    if (isMne(options) && pythonWithMne().empty()) {
-        throw UsageError(option +
-                         "neither python3 nor /usr/bin/python3 has MNE-Python; on Debian: apt "
-                         "install python3-mne");
+    if (isMne(options)) {
+        if (!pythonWithMne().empty()) return "";
+        return "MNE-Python, which neither python3 nor /usr/bin/python3 has (on Debian: apt install "
+               "python3-mne)";
     }
+    std::set<std::string> missing;
     for (const Command& command : openMeegCommands(true, true)) {
-        if (isMne(options) || isInstalled(command.front())) continue;
-        throw UsageError(option + command.front() +
-                         " is not installed; get OpenMEEG from openmeeg.github.io");
+        if (!isInstalled(command.front())) missing.insert(command.front());
     }
+    if (missing.empty()) return "";
+    return joined(missing) + " of OpenMEEG (from openmeeg.github.io)";
 }
 
 void solveLeadField(BemRun& run) {

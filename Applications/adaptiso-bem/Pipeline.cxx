@@ -147,11 +147,17 @@ std::vector<TriangleMesh> firstSurfaces(BemRun& run, const BemHooks& hooks) {
         return extractSurfaces(boundariesFromImages(run, hooks), run.model, hooks);
     }
     std::vector<TriangleMesh> surfaces = run.stage("read", [&] { return readSurfaces(run); });
+    readSources(run);
     return naming("--surfaces",
                   [&] { return mendSurfaces(std::move(surfaces), run.model, hooks); });
 }
 
-/// Reads electrodes and landmarks, before there is a head.
+/// The option of the electrodes, for errors.
+std::string electrodesOf(const BemOptions& options) {
+    return options.electrodes.empty() ? "--montage" : "--electrodes " + options.electrodes.string();
+}
+
+/// Reads and checks electrodes and landmarks, before there is a head.
 void readElectrodes(BemRun& run) {
     const BemOptions& options = run.options;
     GivenElectrodes& given = run.model.givenElectrodes;
@@ -159,6 +165,7 @@ void readElectrodes(BemRun& run) {
         given.file = readPoints(options.electrodes);
         given.fileName = baseName(options.electrodes);
         run.model.inputs.push_back({given.fileName, "electrodes", given.file->format});
+        naming(electrodesOf(options), [&] { checkElectrodes(run.model); });
     }
     if (!options.nasion) return;
     const AffineTransform toLps = inverse(lpsToFrame(CoordinateFrame::Ras, {}));
@@ -172,9 +179,7 @@ void readElectrodes(BemRun& run) {
 
 void putElectrodes(BemRun& run, const BemHooks& hooks) {
     if (!run.model.hasModel() || !run.model.wantsElectrodes()) return;
-    const fs::path& file = run.options.electrodes;
-    naming(file.empty() ? std::string("--montage") : "--electrodes " + file.string(),
-           [&] { placeElectrodes(run.model, hooks); });
+    naming(electrodesOf(run.options), [&] { placeElectrodes(run.model, hooks); });
 }
 
 /// Files of the model's folder once more, for the subject's own.
@@ -280,20 +285,12 @@ int runBem(const BemOptions& options) {
     const SubjectFolder subjectFolder(options);
     checkOutputs(options);
     requireMesher(options.tetrahedra);
-    requireSolver(options.model);
     readElectrodes(run);
-    const auto& cap = run.model.givenElectrodes.file;
-    const auto isElectrode = [](const NamedPoint& p) { return p.kind == PointKind::Electrode; };
-    if (!options.model.leadField.empty() && cap && std::ranges::none_of(cap->points, isElectrode)) {
-        throw InvalidInput("--lead-field: " + options.electrodes.string() +
-                           " holds landmarks alone, no electrode");
-    }
 
     const BemHooks hooks{
         [&](std::string_view stage, const std::function<void()>& work) { run.stage(stage, work); },
         run.progress.callback()};
     std::vector<TriangleMesh> dense = firstSurfaces(run, hooks);
-    readSources(run);
     chooseTkRas(run);
     run.takeWarnings();
     finishBemModel(std::move(dense), run.model, hooks);

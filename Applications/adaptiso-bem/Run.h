@@ -55,8 +55,8 @@ void readSources(BemRun& run);
 /// \throws FileError
 void chooseTkRas(BemRun& run);
 
-/// Checks that who is to make the lead field is installed. \throws UsageError
-void requireSolver(const BemModelOptions& options);
+/// What is to make the lead field and is not installed, in words; empty: nothing.
+std::string missingSolver(const BemModelOptions& options);
 
 /// Has the lead field made of the model's files, in a folder of its own. Fills the model's.
 /// \pre a model, with electrodes and sources

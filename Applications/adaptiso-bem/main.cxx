@@ -14,6 +14,7 @@
 #include "Common/OptionValues.h"
 #include "Common/RunApp.h"
 #include "Pipeline.h"
+#include "Run.h"
 #include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
@@ -367,8 +368,12 @@ void checkCombinations(const CLI::App& app, const BemOptions& options) {
     const auto require = [](bool isGood, const std::string& message) {
         if (!isGood) throw UsageError(message);
     };
-    BemRequest request{
-        {}, options.tissues, options.surfaces.size(), options.sources.size(), options.preset};
+    BemRequest request{{},
+                       options.tissues,
+                       options.surfaces.size(),
+                       options.sources.size(),
+                       options.preset,
+                       missingSolver(options.model)};
     for (const std::string& name : givenOptions(app)) request.given.insert(name.substr(2));
     // of --subject
     if (!options.t1.empty()) request.given.insert("t1");

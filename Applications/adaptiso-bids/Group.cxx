@@ -210,13 +210,14 @@ private:
             if (state != QualityState::Done) entry.rows[n].reason = text;
             if (state != QualityState::Missing) entry.rows[n].check = text;
         }
-        entry.line.state = RunState::Done;
+        entry.line.state = entry.line.warnings.empty() ? RunState::Done : RunState::Warned;
         for (const QualityRow& each : entry.rows) {
             if (each.state == QualityState::Done) continue;
             entry.line.says = each.reason;
             entry.line.reason = reasonOf(each.reason, record.files);
             entry.line.state = !record.hasEnded                      ? RunState::NotFinished
                                : each.state == QualityState::Missing ? RunState::Changed
+                               : record.isFinished()                 ? RunState::CheckFailed
                                                                      : RunState::Failed;
         }
     }
@@ -520,14 +521,14 @@ std::vector<SummaryRow> pageRows(const std::vector<DatasetStatus::Entry>& entrie
                 line.volumesMm3.emplace_back(row->name.empty() ? row->part : row->name, *volume);
             }
             if (row->outliers.empty()) continue;
-            if (line.state == RunState::Done) line.state = RunState::Unusual;
+            line.state = std::min(line.state, RunState::Unusual);
             addPart(line.says,
                     std::string("unlike the others: ") +
                         (row->part.empty() ? "" : row->part + " ") + row->outliers,
                     "; ");
         }
     }
-    std::ranges::stable_sort(lines, {}, &SummaryRow::state);
+    sortByNeed(lines);
     return lines;
 }
 

@@ -46,8 +46,14 @@ public:
     }
 
 private:
+    /// A participant or a scan of whom nothing can be run.
     void printFailed(const std::string& subject, const std::string& reason) {
         hasFailed_ = true;
+        RunRecord& record = records_.emplace_back();
+        record.name = subject;
+        record.hasEnded = true;
+        record.exitCode = kExitBadInput;
+        record.error = reason;
         if (options_.common.isQuiet || options_.common.wantsJsonOnStdout()) {
             printError(kProgram, "failed: " + subject + ": " + reason);
         } else {

@@ -78,6 +78,15 @@ void declareRunning(CLI::App& app, BidsOptions& options) {
     declareCommonOptions(app, options.common, "its result is then not written");
 }
 
+/// "iso=100,largest" of "--iso=100,--largest".
+std::string withoutDashes(std::string list) {
+    list.insert(0, ",");
+    for (std::size_t at = 0; (at = list.find(",--", at)) != std::string::npos;) {
+        list.erase(at + 1, 2);
+    }
+    return list.substr(1);
+}
+
 void checkCombinations(BidsOptions& options) {
     const auto require = [](bool isGood, const std::string& message) {
         if (!isGood) throw UsageError(message);
@@ -87,7 +96,7 @@ void checkCombinations(BidsOptions& options) {
         if (list.empty()) continue;
         require(product == "surfaces" || options.makes(product),
                 "--" + product + "-options: needs --" + product);
-        options.wanted[product] = list;
+        options.wanted[product] = withoutDashes(list);
     }
     require(options.segmentations.empty() || options.makes("labels"),
             "--segmentations: needs --labels");

@@ -33,10 +33,6 @@ std::vector<FileKind> kindsOf(const LabelsRun& run) {
     return kinds;
 }
 
-AffineTransform frameTransform(const LabelsRun& run) {
-    return lpsToFrame(run.frame, frameVolume(run.frame, run.map.geometry));
-}
-
 /// Measures how far the files' digits move the walls.
 /// \param walls  settled \param exact  their points before
 /// \throws InvalidInput  those of a format that was asked for are beyond the bound
@@ -69,8 +65,12 @@ void measureRounding(const TriangleMesh& walls, const std::vector<Vec3>& exact,
 
 }  // namespace
 
+AffineTransform toFile(const LabelsRun& run) {
+    return scaled(lpsToFrame(run.frame, frameVolume(run.frame, run.map.geometry)), run.scale);
+}
+
 void fitToFiles(LabelComplex& complex, LabelsRun& run) {
-    const AffineTransform toFrame = frameTransform(run);
+    const AffineTransform toFrame = toFile(run);
     TriangleMesh walls{std::move(complex.points), {}, std::move(complex.triangles)};
     const std::vector<Vec3> exact = walls.points;
     const std::string input = baseName(run.options.input);
@@ -102,7 +102,7 @@ void fitToFiles(LabelComplex& complex, LabelsRun& run) {
 
 LabelComplex asStored(const LabelComplex& complex, const LabelsRun& run) {
     TriangleMesh stored = asStored(TriangleMesh{complex.points, {}, complex.triangles},
-                                   run.format->precision, frameTransform(run));
+                                   run.format->precision, toFile(run));
     return {std::move(stored.points), std::move(stored.triangles), complex.labels};
 }
 

@@ -263,9 +263,14 @@ void writeSceneFile(const RegionSurfaces& surfaces, LabelsRun& run) {
         if (run.format->holdsNormals) surface.normals = areaWeightedNormals(surface);
         parts.push_back({region.name, region.color, std::move(surface)});
     }
+    MeshWriteOptions write = writeOptions(run);
+    if (run.scale != 1) {
+        write.isInFrame = true;
+        write.saysFrame = false;
+        for (ScenePart& part : parts) part.mesh = transformed(part.mesh, toFile(run));
+    }
     AtomicOutput& output = run.addOutput(run.folder);
-    output.write(
-        [&](const fs::path& path) { writeScene(std::move(parts), path, writeOptions(run)); });
+    output.write([&](const fs::path& path) { writeScene(std::move(parts), path, write); });
     run.files = {{baseName(run.folder), fs::file_size(output.temporary())}};
 }
 

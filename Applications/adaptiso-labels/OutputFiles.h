@@ -73,8 +73,11 @@ bool fitsGifti(const LabelsRun& run);
 void writeFiles(const LabelComplex& complex, const RegionSurfaces& surfaces, const Volume& map,
                 LabelsRun& run, AtomicFolder& folder);
 
-/// Writes the regions' surfaces with their names and colours into the one file that is the run's
-/// output (LabelsRun::isScene). \throws FileError, InvalidInput  as writeScene()
+/// From LPS mm to the files' coordinates, scaled.
+AffineTransform toFile(const LabelsRun& run);
+
+/// Writes the regions' surfaces, where it can with their names and colours, into the one file that
+/// is the run's output (LabelsRun::isScene). \throws FileError, InvalidInput  as writeScene()
 void writeSceneFile(const RegionSurfaces& surfaces, LabelsRun& run);
 
 /// regions.tsv.

@@ -22,6 +22,7 @@
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Files/AtomicOutput.h"
+#include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Scene.h"
 
 namespace adaptiso::labels {
@@ -164,6 +165,10 @@ LabelComplex extract(const VolumeView& map, LabelsRun& run) {
     LabelResult result =
         naming(baseName(options.input), [&] { return extractLabels(map, extraction); });
     run.statistics = result.statistics;
+    const TriangleMesh walls{result.complex.points, {}, {}};
+    run.scale = chooseScale(options.scale, walls,
+                            lpsToFrame(run.frame, frameVolume(run.frame, run.map.geometry)),
+                            baseName(run.folder));
     run.points = std::ssize(result.complex.points);
     run.triangles = std::ssize(result.complex.triangles);
     return std::move(result.complex);
@@ -177,6 +182,19 @@ void measure(const LabelComplex& complex, LabelsRun& run) {
             region->measure = std::move(measure);
         }
     }
+}
+
+/// Brings figures of the scan to those of the file.
+void scaleFigures(LabelsRun& run) {
+    const double factor = run.scale, square = factor * factor;
+    run.statistics.errorBoundMm *= factor;
+    run.roundingMm *= factor;
+    for (Region& region : run.regions) {
+        region.measure.volumeMm3 *= square * factor;
+        region.measure.areaMm2 *= square;
+        for (RegionContact& contact : region.measure.neighbours) contact.areaMm2 *= square;
+    }
+    noteScale(factor, baseName(run.folder), run.warnings);
 }
 
 /// Where a count could not be met. With --max-error as well the bound may end it before: that was
@@ -198,14 +216,11 @@ std::string failureText(const LabelsRun& run) {
     return text;
 }
 
-void writePage(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeView& map) {
+/// \param shown  the image behind the regions: of --volume, or the map
+void writePage(LabelsRun& run, const RegionSurfaces& surfaces, const VolumeView& shown) {
     const LabelsOptions& options = run.options;
-    std::optional<ReadVolume> behind;
-    if (!options.volume.empty()) behind = readImage(options.volume, {});
     const fs::path& file = options.volume.empty() ? options.input : options.volume;
-    run.writePage([&] {
-        return makeReport(run, surfaces, baseName(file), behind ? behind->volume.view() : map);
-    });
+    run.writePage([&] { return makeReport(run, surfaces, baseName(file), shown); });
 }
 
 /// Each input as a run of its own. \return an exit code
@@ -225,7 +240,8 @@ const MeshFormat* sceneFormatOf(const fs::path& output) {
     for (const MeshFormat& format : meshFormats()) {
         const bool isMeant =
             std::ranges::find(format.extensions, extension) != format.extensions.end();
-        if (isMeant && holdsScene(format) && !fs::is_directory(output, error)) return &format;
+        const bool isOne = holdsScene(format) || extension == ".stl";
+        if (isMeant && isOne && !fs::is_directory(output, error)) return &format;
     }
     return nullptr;
 }
@@ -238,10 +254,15 @@ int runLabels(const LabelsOptions& given) {
     run.isScene = run.leavesGiftiOut = scene != nullptr;
     run.format = scene != nullptr ? scene : &findMeshFormat("region" + options.format);
     run.frame = outputFrame(options.frame, *run.format);
+    checkScale(options.scale, *run.format, options.frame);
     run.stage("read", [&] { findMasks(options, run); });
     checkOutputs(run);
     requireMesher(options.tetrahedra);
 
+    std::optional<ReadVolume> behind;
+    if (!options.volume.empty()) {
+        behind = run.stage("read", [&] { return readImage(options.volume, {}); });
+    }
     LabelCensus census;
     const Volume volume = run.stage("read", [&] { return readMap(options, run, census); });
     const VolumeView& map = volume.view();
@@ -263,6 +284,7 @@ int runLabels(const LabelsOptions& given) {
     if (options.tetrahedra.isRequested() && run.holdsPromises()) {
         run.stage("tetrahedra", [&] { makeTetrahedra(complex, run); });
     }
+    scaleFigures(run);
     warnOfCount(run);
     if (!run.leavesGiftiOut && !fitsGifti(run)) {
         run.warnings.push_back({"file-left-out",
@@ -281,7 +303,7 @@ int runLabels(const LabelsOptions& given) {
             run.files = folder->files();
         });
     }
-    if (options.report.isWanted()) writePage(run, surfaces, map);
+    if (options.report.isWanted()) writePage(run, surfaces, behind ? behind->volume.view() : map);
     if (!run.holdsPromises()) {
         run.verdict = {kExitCheckFailed, baseName(options.input) +
                                              ": its walls do not keep their promises, so nothing "

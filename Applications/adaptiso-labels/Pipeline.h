@@ -10,6 +10,7 @@
 #include "Common/BatchOptions.h"
 #include "Common/CommonOptions.h"
 #include "Common/Mesher.h"
+#include "Common/PrintScale.h"
 #include "Common/ReportOutput.h"
 #include "LabelLists.h"
 #include "Masks.h"
@@ -45,6 +46,7 @@ struct LabelsOptions {
     bool namesFiles = false;               ///< of regions by their names, else by their labels
     std::string format = ".vtp";           ///< of the regions' files, an extension
     std::optional<CoordinateFrame> frame;  ///< empty: the format's own
+    PrintScale scale;                      ///< of one file of all regions
     std::filesystem::path volume;          ///< shown behind the regions; empty: the input
     ReportOptions report;
     CommonOptions common;

@@ -197,9 +197,13 @@ const Region* LabelsRun::find(Label label) const {
 
 std::string LabelsRun::nameOf(Label label) const {
     if (label == 0) return "outside";
-    const Region* const region = find(label);
-    if (region == nullptr || !region->hasOwnName) return ids.text(label);
-    return region->name + " (" + ids.text(label) + ")";
+    std::string name;
+    if (const Region* const region = find(label)) {
+        if (region->hasOwnName) name = region->name;
+    } else if (const auto other = otherNames.find(label); other != otherNames.end()) {
+        name = other->second;
+    }
+    return name.empty() ? ids.text(label) : name + " (" + ids.text(label) + ")";
 }
 
 std::vector<Label> chooseLabels(const LabelCensus& census, const LabelsRun& run) {
@@ -233,20 +237,25 @@ void nameRegions(const std::vector<Label>& labels, const LabelCensus& census, La
     std::vector<std::optional<LabelColor>> given;
     std::map<LabelId, std::string> mergedNames;
     for (const LabelMerge& merge : run.options.merges) mergedNames[merge.number()] = merge.name;
-    for (const Label label : labels) {
+    for (const auto& [label, voxels] : census.voxels) {
+        const LabelId id = run.ids.of(label);
+        const LabelEntry* const entry = entryOf(table, id);
+        const auto merged = mergedNames.find(id);
+        const std::string name = merged != mergedNames.end() ? merged->second
+                                 : entry != nullptr          ? entry->name
+                                                             : "";
+        if (!std::binary_search(labels.begin(), labels.end(), label)) {
+            if (!name.empty()) run.otherNames[label] = name;
+            continue;
+        }
         Region& region = run.regions.emplace_back();
         region.label = label;
-        region.voxels = census.voxels.at(label);
+        region.name = name;
+        region.voxels = voxels;
         std::optional<LabelColor>& color = given.emplace_back();
-        const LabelId id = run.ids.of(label);
-        if (const LabelEntry* const entry = entryOf(table, id)) {
-            region.name = entry->name;
-            region.abbreviation = entry->abbreviation;
+        if (entry != nullptr) {
+            if (merged == mergedNames.end()) region.abbreviation = entry->abbreviation;
             color = entry->color;
-        }
-        if (const auto merged = mergedNames.find(id); merged != mergedNames.end()) {
-            region.name = merged->second;
-            region.abbreviation.clear();
         }
         region.hasOwnName = !region.name.empty();
         if (!region.hasOwnName) region.name = "region " + idText(id);

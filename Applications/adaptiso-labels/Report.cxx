@@ -76,6 +76,7 @@ Json optionsJson(const LabelsOptions& options) {
     Json json{{"labels", options.labels.empty() ? Json(nullptr) : rangesJson(options.labels)},
               {"merges", merges}};
     json.update(valuesJson(aimOptions(AimedSurface::Walls), options.aims));
+    json.update(valuesJson(scaleOptions(), options.scale));
     json["layers"] = options.writesLayers;
     json["conductivities"] = conductivities;
     json["strict"] = options.common.isStrict;
@@ -141,7 +142,8 @@ Json sharedJson(const LabelsRun& run) {
             {"options", optionsJson(run.options)},
             {"output",
              {{"format", run.format->name},
-              {"coordinates", frameWord(run.frame)},
+              {"coordinates", run.scale == 1 ? Json(frameWord(run.frame)) : Json()},
+              {"scale", number(run.scale)},
               {"roundingMm", number(run.roundingMm)},
               {"giftiRoundingMm", run.leavesGiftiOut ? Json() : number(run.giftiRoundingMm)}}},
             {"walls", wallsJson(run.points, run.triangles, run.errorBoundMm(), run.statistics)},
@@ -150,6 +152,11 @@ Json sharedJson(const LabelsRun& run) {
             {"passed", run.holdsPromises()},
             {"checks", checksJson(run)},
             {"warnings", run.warnings}};
+}
+
+std::string frameText(const LabelsRun& run) {
+    return run.scale == 1 ? std::string(toString(run.frame))
+                          : "scaled by " + formatNumber(run.scale);
 }
 
 void printMasks(std::ostream& out, const LabelsRun& run) {
@@ -233,7 +240,8 @@ void addOptions(const LabelsRun& run, Report& report) {
         run.errorBoundMm() > 0
             ? "at most " + formatBound(run.errorBoundMm()) + " mm, both ways (proved)"
             : "none, these are its walls");
-    add("Format, frame", std::string(run.format->name) + ", " + std::string(toString(run.frame)));
+    addOptions(scaleOptions(), options.scale, report.options);
+    add("Format, frame", std::string(run.format->name) + ", " + frameText(run));
 }
 
 void addFindings(const LabelsRun& run, Report& report) {
@@ -353,7 +361,7 @@ void printReport(std::ostream& out, const LabelsRun& run) {
     out << oneLine(run.folder.string()) << (run.writesFolder() ? "" : " (not written)") << ": "
         << counted(std::ssize(run.regions), "region") << " of "
         << oneLine(run.options.input.filename().string()) << ", " << run.format->name << ", "
-        << toString(run.frame) << '\n';
+        << frameText(run) << '\n';
     printMasks(out, run);
     printWalls(out, run);
     if (run.tetrahedra) {

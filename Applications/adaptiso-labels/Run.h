@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -75,13 +76,15 @@ struct LabelsRun : ProgramRun {
     bool isScene = false;          ///< it is one file of all regions
     const MeshFormat* format = nullptr;
     CoordinateFrame frame{};
+    double scale = 1;  ///< of the file's coordinates, and of all lengths, areas and volumes here
     MapSummary map{};
     JoinedMasks joined{};
     LabelIds ids{};
     NamesSummary names{};
     LabelStatistics statistics{};
-    std::int64_t points = 0, triangles = 0;  ///< of the walls
-    std::vector<Region> regions{};           ///< those that are wanted, by label
+    std::int64_t points = 0, triangles = 0;     ///< of the walls
+    std::vector<Region> regions{};              ///< those that are wanted, by label
+    std::map<Label, std::string> otherNames{};  ///< of the map's other labels, where they have one
     std::vector<LabelsCheck> checks{};
     std::optional<RegionTetrahedra> tetrahedra{};                 ///< if wanted
     std::vector<std::pair<std::string, std::uintmax_t>> files{};  ///< files of the folder, by name
@@ -111,7 +114,7 @@ struct LabelsRun : ProgramRun {
 
     /// The region of a label; nullptr: it is not among those wanted.
     const Region* find(Label label) const;
-    /// "Precentral_L (1)", "1" of one that is not wanted, "outside" of 0
+    /// "Precentral_L (1)", "1" of one without a name, "outside" of 0
     std::string nameOf(Label label) const;
 };
 

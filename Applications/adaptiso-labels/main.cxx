@@ -100,6 +100,9 @@ void checkCombinations(const LabelsOptions& options) {
                              shellQuoted((output.parent_path() / output.stem()).string()));
         }
     } else {
+        if (options.scale.isWanted()) {
+            throw UsageError("--scale, --fit: are for one file of all regions; give -o body.3mf");
+        }
         requireFolderName("--output", output,
                           "give -o " +
                               shellQuoted((output.parent_path() / output.stem()).string()) +
@@ -182,7 +185,8 @@ void declareOutput(CLI::App& app, LabelsOptions& options) {
     const OptionGroup output(app, kOutput);
     output.text("-o,--output", "DIR", options.output,
                 "The folder to write, whole or not at all (default: <INPUT>-labels in the "
-                "current folder); a file .glb or .3mf: all regions in it, with names and colours");
+                "current folder); a file .glb or .3mf: all regions in it, with names and colours; "
+                ".stl: without");
     output.flag("--force", options.mayReplace,
                 "Replace a folder that this program wrote; one that holds other files is not");
     output.value(
@@ -203,6 +207,7 @@ void declareOutput(CLI::App& app, LabelsOptions& options) {
                        "The points' frame in all files: scanner RAS mm (default), scanner "
                        "LPS mm, FreeSurfer's surface RAS mm (default with --format surf), "
                        "or voxel indices");
+    output.rows(scaleOptions(), options.scale);
     declareReportOptions(app, options.report, kOutput);
     output.text("--volume", "IMG", options.volume,
                 "With --report: the image to show behind the regions (default: the label map)");
@@ -226,7 +231,7 @@ constexpr const char* kFooter = R"(Examples:
       a folder of masks, a file for each region, joined to one map
   adaptiso-labels totalseg.nii.gz -o body.glb
       one file of all regions with names and colours, for viewers and slides;
-      body.3mf for printers
+      body.3mf (body.stl) for printers
   adaptiso-labels *_dseg.nii.gz --output-dir surfaces --skip-existing
       each image a run of its own
 

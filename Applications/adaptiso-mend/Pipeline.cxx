@@ -21,16 +21,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The output, or "scan-mended.ply" of "scan.ply" in the folder that it names or the current one.
+fs::path outputPath(const MendCommand& command) {
+    const fs::path& output = command.output;
+    if (!output.empty() && !isFolder(output)) return output;
+    return output / insertBeforeExtension(command.input.filename(), "-mended");
+}
+
+/// Empty where --output names the file, else its folder: the name is made here.
+fs::path ownFolder(const MendRun& run) {
+    return run.output.file == run.command.output ? fs::path() : detail::folderOf(run.output.file);
+}
+
 /// Names the output and checks it before a file is read.
 void checkOutputs(MendRun& run) {
     const MendCommand& command = run.command;
     run.input.file = command.input;
     OutputPlan plan(std::array{command.input, command.around});
-    if (!command.output.empty()) {
-        run.output.file = command.output;
-        run.output.format = &meshFormatOf(command.output);
+    if (!command.output.empty() || !command.isDryRun) {
+        run.output.file = outputPath(command);
+        run.output.format = &meshFormatOf(run.output.file);
         checkScale(command.scale, *run.output.format, command.frame);
-        plan.add("--output", command.output);
+        plan.add("--output", run.output.file, ownFolder(run));
     }
     plan.check(command.common, command.report);
 }
@@ -125,7 +137,7 @@ bool isCopied(const MeshFile& input, const FrameChange& change, const MendRun& r
 }
 
 void copyFile(MendRun& run) {
-    AtomicOutput& output = run.addOutput(run.output.file);
+    AtomicOutput& output = run.addOutput(run.output.file, ownFolder(run));
     output.write([&](const fs::path& path) {
         fs::copy_file(run.input.file, path, fs::copy_options::overwrite_existing);
     });
@@ -151,7 +163,7 @@ void finish(TriangleMesh result, std::vector<Vec3> mended, const TriangleMesh& f
     std::swap(result.points, mended);
     MeshFile written = run.stage("write", [&] {
         if (!run.output.format->holdsNormals) result.normals.clear();
-        return run.writeSurface(result, std::move(values), input, change);
+        return run.writeSurface(result, std::move(values), input, change, ownFolder(run));
     });
     run.stage("verify", [&] {
         summarize(written.mesh, run.output);

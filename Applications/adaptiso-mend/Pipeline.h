@@ -20,7 +20,7 @@ struct MendCommand {
     std::filesystem::path around;  ///< a surface that the result is to lie around; may be empty
     std::optional<double> gapMm;   ///< least distance to it
     bool isDryRun = false;         ///< no surface is written, `output` is left as it is
-    std::filesystem::path output;  ///< empty: isDryRun
+    std::filesystem::path output;  ///< a file, or a folder; empty: the current one
     std::optional<CoordinateFrame> frame;  ///< empty: the input's own
     PrintScale scale;
     ReportOptions report;  ///< none

@@ -16,9 +16,6 @@ void checkCombinations(const MendCommand& command) {
     if (command.around.empty() == command.gapMm.has_value()) {
         throw UsageError("--around FIXED, --gap MM: each needs the other");
     }
-    if (command.output.empty() && !command.isDryRun) {
-        throw UsageError("--output is missing: the file to write (or --dry-run)");
-    }
     if (command.isDryRun && command.scale.isWanted()) {
         throw UsageError("--scale, --fit: are for the file to write, not with --dry-run");
     }
@@ -31,7 +28,8 @@ void checkCombinations(const MendCommand& command) {
 }
 
 constexpr const char* kFooter = R"(Examples:
-  adaptiso-mend scan.ply -o solid.ply
+  adaptiso-mend scan.ply
+      writes scan-mended.ply into the current folder
   adaptiso-mend scan.ply --dry-run
       what is wrong with it, and what would be changed; nothing is written
   adaptiso-mend lh.pial --max-error 0.1 -o mended/lh.pial
@@ -68,7 +66,9 @@ void declareMendOptions(CLI::App& app, MendCommand& command) {
                   "Least distance to that surface (a number above 0, in mm)");
     const OptionGroup output(app, "Output");
     output.text("-o,--output", "OUT", command.output,
-                "The file to write. The format follows from the extension: " + meshExtensions());
+                "The file to write, or a folder (default: scan-mended.ply of scan.ply in the "
+                "current one). The format follows from the extension: " +
+                    meshExtensions());
     declareCoordinates(output, command.frame,
                        "The points' frame in the file: scanner RAS mm, scanner LPS mm, or "
                        "FreeSurfer's surface RAS mm (default: as the input has them)",

@@ -63,16 +63,6 @@ NamedIsovalue named(const MeshOptions& options, std::size_t number, std::optiona
     return name;
 }
 
-/// "lh-iso50.surf.gii" of "lh.surf.gii": GIFTI surfaces have an extension of two parts.
-fs::path insertBeforeExtension(const fs::path& path, const std::string& text) {
-    const std::string name = path.filename().string();
-    constexpr std::string_view kTwoParts = ".surf.gii";
-    const std::size_t kept = name.size() - std::min(name.size(), kTwoParts.size());
-    const bool hasTwoParts = kept > 0 && lowerCase(name.substr(kept)) == kTwoParts;
-    const std::string stem = hasTwoParts ? name.substr(0, kept) : path.stem().string();
-    return path.parent_path() / (stem + text + name.substr(stem.size()));
-}
-
 /// \param isOne  there is one isovalue
 fs::path outputPath(const fs::path& output, bool isOne, const NamedIsovalue& isovalue) {
     const std::string name = output.filename().string();
@@ -84,11 +74,14 @@ fs::path outputPath(const fs::path& output, bool isOne, const NamedIsovalue& iso
 
 /// The file that the surface at an isovalue goes to.
 ///
-/// Without an output in `options`: "<stem>-iso<isovalue>.vtp" in the current folder. An output
-/// with "{iso}" in its name has the isovalue in that place. Otherwise the output is taken as it
-/// is for one isovalue, and for several gets "-iso<isovalue>" before its extension.
+/// Without an output in `options`: "<stem>-iso<isovalue>.vtp" in the current folder, or in the
+/// folder that it names. An output with "{iso}" in its name has the isovalue in that place.
+/// Otherwise the output is taken as it is for one isovalue, and for several gets "-iso<isovalue>"
+/// before its extension.
 fs::path outputPath(const MeshOptions& options, const NamedIsovalue& isovalue) {
-    if (options.output.empty()) return inputStem(options.input) + "-iso" + isovalue.text + ".vtp";
+    if (options.output.empty() || isFolder(options.output)) {
+        return options.output / (inputStem(options.input) + "-iso" + isovalue.text + ".vtp");
+    }
     return outputPath(options.output, options.isovalues.size() == 1, isovalue);
 }
 

@@ -117,7 +117,7 @@ void declareOutput(CLI::App& app, MeshOptions& options) {
     const OptionGroup output(app, kOutput);
     output.text(
         "-o,--output", "OUT", options.output,
-        "The file to write (default: <INPUT>-iso<V>.vtp in the current folder). {iso} in "
+        "The file to write, or a folder (default: <INPUT>-iso<V>.vtp in the current one). {iso} in "
         "its name stands for the isovalue, to five digits where these tell it from the others, "
         "{isolabel} for all of it in letters and digits (411p5, m300); without them, several "
         "surfaces get -iso<V> before the extension. The "
@@ -179,6 +179,7 @@ void declareMeshOptions(CLI::App& app, MeshOptions& options) {
                            {"--pictures", options.report.pictures}},
                           options.batch, options.common);
         if (options.isBatch() || options.image.tellsInfo) keepRunOptions(app, options.batch);
+        if (options.isBatch()) takeFolder(options.output, options.batch);
     });
 }
 

@@ -23,7 +23,7 @@ struct SimplifyCommand {
     std::vector<std::filesystem::path> data;        ///< files of values at its points
     SimplifyOptions aim;
     bool requiresSound = false;
-    std::filesystem::path output;          ///< a file, or a folder; empty: batch.outputFolder
+    std::filesystem::path output;          ///< as for surfaceFile(); empty also: batch.outputFolder
     std::optional<CoordinateFrame> frame;  ///< empty: the input's own
     PrintScale scale;
     BatchOptions batch;

@@ -76,15 +76,12 @@ struct SimplifyRun : SurfaceChangeRun {
     }
 };
 
-/// It ends with a slash, or is a folder that is there.
-bool isFolder(const std::filesystem::path& path);
-
 /// The name that stands for {name}: "bone" of "bone.stl", "lh" of "lh.surf.gii"; "lh.pial" of
 /// itself, as FreeSurfer tells its surfaces apart by the extension.
 std::string surfaceName(const std::filesystem::path& input);
 
 /// Where the simplified surface goes: `output`, or the file of the input's name in the folder that
-/// it names.
+/// it names; by default "bone-simplified.stl" of "bone.stl" in the current folder.
 std::filesystem::path surfaceFile(const std::filesystem::path& output,
                                   const std::filesystem::path& input);
 

@@ -33,23 +33,9 @@ void checkCombinations(const SimplifyCommand& command) {
     refuseOutputAsInput(command.inputs, command.output, command.batch);
     checkInputCoordinates(command.inputCoordinates, 1);
     checkAim(command.aim);
-    const bool hasFolder = !command.batch.outputFolder.empty();
-    if (command.output.empty() && !hasFolder) {
-        throw UsageError("--output is missing: the file to write, or a folder");
+    if (command.isBatch() && command.output.empty() && command.batch.outputFolder.empty()) {
+        throw UsageError("--output is missing: a folder, or a name with {name}");
     }
-    if (hasFolder && isFolder(command.output)) {
-        throw UsageError("--output " + command.output.string() +
-                         ": is a folder, and --output-dir names one; give one of them");
-    }
-}
-
-/// Several surfaces into one folder: --output is then what --output-dir is.
-void takeFolder(SimplifyCommand& command) {
-    if (!isFolder(command.output)) return;
-    command.batch.outputFolder = command.output;
-    command.output.clear();
-    std::erase_if(command.batch.runOptions,
-                  [](const std::string& option) { return option.starts_with("--output="); });
 }
 
 void declareInput(CLI::App& app, SimplifyCommand& command) {
@@ -79,7 +65,8 @@ void declareAim(CLI::App& app, SimplifyCommand& command) {
 void declareOutput(CLI::App& app, SimplifyCommand& command) {
     const OptionGroup output(app, kOutput);
     output.text("-o,--output", "OUT", command.output,
-                "The file to write, or a folder for files of the inputs' names. {name} in its "
+                "The file to write, or a folder for files of the inputs' names (default, of one "
+                "input: bone-simplified.stl of bone.stl in the current folder). {name} in its "
                 "name stands for the input's. The format follows from the extension: " +
                     meshExtensions());
     declareCoordinates(output, command.frame,
@@ -127,7 +114,7 @@ void declareSimplifyOptions(CLI::App& app, SimplifyCommand& command) {
         if (!command.inputs.empty()) command.input = command.inputs.front();
         if (!command.isBatch()) return;
         keepRunOptions(app, command.batch);
-        takeFolder(command);
+        takeFolder(command.output, command.batch);
     });
 }
 

@@ -132,7 +132,7 @@ TEST_F(BatchSummaryTest, HoldsWhatMadeItAndWhatMakesItAgain) {
 
 TEST_F(BatchSummaryTest, EscapesTextsAndIsTheSameForTheSameRows) {
     row_.name = row_.says = row_.reason = "<b onclick=x>\"&'";
-    row_.warnings = {"<i>"};
+    row_.warnings = {{"<i>", "<i>"}};
     row_.volumesMm3 = {{"<u>", 5}};
     std::vector<SummaryRow> rows(7, row_);
     rows.back().volumesMm3 = {{"<u>", 500}};
@@ -148,8 +148,8 @@ TEST_F(BatchSummaryTest, CountsEachRunOnceForItsReason) {
     rows[0].state = rows[2].state = rows[5].state = RunState::Failed;
     rows[0].reason = rows[5].reason = "closed";
     rows[2].reason = "truncated";
-    rows[1].warnings = rows[2].warnings = {"guessed-unit"};
-    rows[1].warnings.push_back("not-finite");
+    rows[1].warnings = rows[2].warnings = {{"guessed-unit"}, {"guessed-unit"}};
+    rows[1].warnings.push_back({"not-finite"});
     const std::vector<SummaryReason> reasons = reasonsOf(rows);
     ASSERT_EQ(reasons.size(), 4U);
     EXPECT_EQ(reasons[0].reason, "closed");
@@ -190,10 +190,33 @@ TEST_F(BatchSummaryTest, SortsByNumbersAndStates) {
     rows[0].state = RunState::Unusual;
     rows[1].seconds = 12.345;
     const std::string text = pageOf(rows);
-    for (const char* const key : {"data-key=\"4\">▲", "data-key=\"5\">✔",
+    for (const char* const key : {"data-key=\"5\">▲", "data-key=\"7\">✔",
                                   "data-key=\"123456.75\">123,457<", "data-key=\"12.345\">12.3<"}) {
         EXPECT_NE(text.find(key), std::string::npos) << key;
     }
+}
+
+TEST_F(BatchSummaryTest, RanksByWhatMustBeLookedAtFirst) {
+    const std::vector<Warning> one{{"not-finite", "5 samples are <NaN>"}}, two(2, one.front());
+    std::vector<RunRecord> records(5, RunRecord{"adaptiso-mesh", "1"});
+    for (RunRecord& record : records) record.hasEnded = true;
+    records[0].name = "passed";
+    records[1].name = "warned";
+    records[1].warnings = one;
+    records[2].name = "warned twice";
+    records[2].warnings = two;
+    records[3].name = "check";
+    records[3].exitCode = 1;
+    records[4].name = "failed";
+    records[4].exitCode = 3;
+    std::vector<SummaryRow> rows;
+    for (const RunRecord& record : records) rows.push_back(recordRow(record));
+    sortByNeed(rows);
+    std::string order;
+    for (const SummaryRow& row : rows) order += row.name + "; ";
+    EXPECT_EQ(order, "failed; check; warned twice; warned; passed; ");
+    EXPECT_EQ(verdictOf(rows), "1 of 5 failed, 1 with a failed check, 2 with warnings");
+    EXPECT_NE(pageOf(rows).find("▲ 2 warnings: 5 samples are &lt;NaN&gt;</td>"), std::string::npos);
 }
 
 TEST_F(BatchSummaryTest, SaysTheVerdictInWords) {
@@ -203,7 +226,7 @@ TEST_F(BatchSummaryTest, SaysTheVerdictInWords) {
     row_.state = RunState::Done;
     EXPECT_NE(page().find("All 1 done"), std::string::npos);
     EXPECT_NE(page().find("<title>PASSED: "), std::string::npos);
-    row_.warnings = {"not-finite"};
+    row_.warnings = {{"not-finite"}};
     EXPECT_NE(page().find("<title>PASSED WITH WARNINGS: "), std::string::npos);
     row_.state = RunState::NotFinished;
     EXPECT_NE(page().find("<title>NOT FINISHED: "), std::string::npos);

@@ -157,6 +157,8 @@ class Lists(BatchTest):
         self.batch(OK, "--list", "list", "--iso", 100, "-o", "{name}.stl", "--output-dir", "out")
         self.assertTrue(self.path("out/a.stl").exists())
         self.assertTrue(self.path("out/second.stl").exists())
+        self.batch(OK, "--list", "list", "--iso", 100, "-o", "out/")
+        self.assertTrue(self.path("out/second-iso100.vtp").exists())
 
     def test_of_any_program_are_read(self):
         for number, text in enumerate((b"\xef\xbb\xbfa.nii\r\nb.nii\r\n", b"a.nii\rb.nii",

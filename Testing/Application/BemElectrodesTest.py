@@ -179,8 +179,11 @@ class Electrodes(BemTest):
 
     def test_a_frame_that_nothing_tells_is_refused(self):
         self.path("cap.elc").write_text("UnitPosition mm\nPositions\n0 0 80\nLabels\nCz\n")
-        self.fails(BAD_INPUT, "says no coordinate frame.*--electrodes-in ras, lps or tkras",
-                   *self.labels(), "--electrodes", "cap.elc", *LANDMARKS, "-o", "model")
+        missing = ("--t1", "missing.nii", "-o", "model", "--electrodes", "cap.elc")  # refused before the head is read
+        self.fails(BAD_INPUT, "--electrodes cap.elc: the file says no coordinate frame.*--electrodes-in ras, lps or tkras",
+                   *missing, *LANDMARKS)
+        self.path("cap.elc").write_text("UnitPosition mm\nPositions\n0 80 0\nLabels\nNAS\n")
+        self.fails(BAD_INPUT, "--electrodes cap.elc: the file holds no electrode", *missing, "--electrodes-in", "ras")
 
     def test_positions_of_the_systems(self):
         for system, count in (("10-20", 21), ("10-10", 73), ("10-05", 277)):
@@ -384,13 +387,21 @@ class OpenMeeg(BemTest):
             os.kill(int(mark.read_text()), 0)
 
     def test_what_is_missing_is_told_before_the_work(self):
-        at = self.command.index("--montage")
-        self.fails(USAGE, r"--lead-field needs --electrodes or --montage", *self.command[:at], *self.command[-6:])
-        self.fails(USAGE, r"--lead-field needs --sources or --source-grid", *self.command[:-6], *self.command[-4:])
+        def needs(what, *arguments):
+            done = self.run_bem("--t1", "missing.nii", *self.command[-4:], *arguments, env=self.environment)
+            self.assertEqual((done.returncode, done.stderr.split("--lead-field needs ")[1:]), (USAGE, [what + " (see adaptiso-bem --help)\n"]), done.stderr)
+
+        needs("--electrodes or --montage", "--source-grid", "30")
+        needs("--sources or --source-grid", "--montage", "10-20")
         self.path("om_gain").unlink()
-        done = self.run_bem("--t1", "missing.nii", *self.command[-6:], "--montage", "10-20", env=self.environment)
-        self.assertEqual(done.returncode, USAGE)
-        self.assertIn("--lead-field openmeeg: om_gain is not installed", done.stderr)
+        needs("om_gain of OpenMEEG (from openmeeg.github.io)", "--montage", "10-20", "--source-grid", "30")
+        self.path("om_assemble").unlink()
+        needs("--electrodes or --montage; --sources or --source-grid; a skin (not with --meg); om_assemble, om_gain of OpenMEEG "
+              "(from openmeeg.github.io)", "--meg")
+
+    def test_sources_are_read_before_the_head_is_worked_on(self):
+        self.path("lh.white").write_text("no surface")
+        self.fails(BAD_INPUT, "lh.white", *self.labels(), "--tissue", "brain=9", "--sources", "lh.white", "-o", "model")
 
 
 if __name__ == "__main__":

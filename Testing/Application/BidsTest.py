@@ -100,6 +100,8 @@ class Participants(BidsTest):
         self.assertRegex(done.stdout, r"(?m)^FAILED  sub-03: surfaces: no T1w image$")
         self.assertRegex(done.stdout, r"(?m)^FAILED  .*sub-02_T1w.nii: truncated")
         self.assertRegex(done.stdout, r"(?m)^done    .*sub-01_T1w.nii: ")
+        self.assertRegex(done.stdout, r"(?m)^3 runs, 2 failed$")
+        self.assertIn("  1 failed: surfaces: no T1w image: sub-03\n", done.stdout)
 
     def test_head_models_labels_and_checks(self):
         def head(x, y, z):
@@ -185,7 +187,9 @@ class Participants(BidsTest):
                 (USAGE, "LEVEL", ("both",)),
                 (USAGE, "--surfaces lagrest: adaptiso-mesh has no such option; did you mean largest",
                  ("participant", "--surfaces", "iso=1,lagrest")),
-                (USAGE, "--surfaces output=x: is set by", ("participant", "--surfaces", "output=x")),
+                (USAGE, "--surfaces output=x: is set by", ("participant", "--surfaces=--iso=1,--output=x")),
+                (USAGE, "--surfaces: its value is missing; one that begins with dashes is given as --surfaces=--iso=1,--largest",
+                 ("participant", "--surfaces", "--iso=1,--largest")),
                 (USAGE, "--surfaces iso=1: is given twice", ("participant", "--surfaces", "iso=1,iso=1.0")),
                 (USAGE, "--surfaces format=doc", ("participant", "--surfaces", "iso=1,format=doc")),
                 (USAGE, "--bem-options: needs --bem", ("participant", "--bem-options", "meg")),

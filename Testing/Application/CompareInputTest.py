@@ -1,6 +1,8 @@
 """adaptiso-compare: frames, formats and refusals."""
 
-from support import BAD_INPUT, OK, USAGE, ball, lines, main, write_nifti
+import subprocess
+
+from support import BAD_INPUT, BIN, OK, USAGE, ball, lines, main, write_nifti
 from compareSupport import LPS, TKRAS, VOXEL, CompareTest, plane, sphere, to_lps
 
 
@@ -45,6 +47,10 @@ class Frames(CompareTest):
         self.assertIsNone(report["coordinates"])
         self.assertNotIn(b"CoordinateFrame", self.path("c.vtp").read_bytes())
         self.assertNotIn(b"SPACE", self.path("c.vtp").read_bytes())
+        for name in ("bare.stl", "bare.3mf"):
+            subprocess.run([BIN / "adaptiso-simplify", "bare.off", "--max-error", "1e-6", "-o", name], cwd=self.folder, check=True,
+                           capture_output=True)
+        self.assert_same("bare.stl", "bare.3mf", warnings=["bare.stl and bare.3mf don't say"])
         self.path("bare.obj").write_text("v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n")
         self.refused(BAD_INPUT, "bare.off and bare.obj don't say .*different formats.*"
                      "--input-coordinates ras, lps, tkras or voxel", "bare.off", "bare.obj")

@@ -130,6 +130,21 @@ class OutputTest(LabelsTest):
         self.assertEqual(re.findall('displaycolor="(.*?)"', model)[::2], ["#FF8000", "#0000FF"])
         self.assertEqual(model.count("<triangle "), sum(triangles))
 
+    def test_one_stl_of_all_regions_scaled(self):
+        whole, half = (json.loads(self.labels("boxes.nii", "-o", name, *scale, "--json", "-").stdout)
+                       for name, scale in (("body.stl", ()), ("half.stl", ("--scale", "0.5"))))
+        triangles = sum(region["triangles"] for region in whole["regions"])
+        self.assertEqual(struct.unpack_from("<I", self.files()["body.stl"], 80), (triangles,))
+        for one, other in zip(whole["regions"], half["regions"]):
+            self.assertAlmostEqual(other["volumeMm3"], one["volumeMm3"] / 8)
+            self.assertAlmostEqual(other["neighbours"][0]["areaMm2"], one["neighbours"][0]["areaMm2"] / 4)
+        first, scaled = (struct.unpack_from("<3f", self.files()[name], 96) for name in ("body.stl", "half.stl"))
+        self.assertEqual(first, tuple(2 * v for v in scaled))
+        self.assertEqual((half["output"]["coordinates"], half["output"]["scale"]), (None, 0.5))
+        self.assertEqual([warning["code"] for warning in half["warnings"]], ["surface-scaled"])
+        self.refused(BAD_INPUT, r"--fit 9,9,9: body.3mf would be .* x .* x .* mm; --scale 0.\d+ fits", "boxes.nii", "-o", "body.3mf",
+                     "--fit", "9,9,9")
+
     def test_one_file_refuses_what_needs_a_folder(self):
         for option in (["--format", "stl"], ["--write-map"], ["--layers"],
                        ["--file-names", "name"], ["--tetrahedra", "gmsh"]):
@@ -137,7 +152,8 @@ class OutputTest(LabelsTest):
                          "regions; give -o a", "boxes.nii", "-o", "a.glb", *option)
         self.refused(USAGE, "voxel: 3MF holds points in mm only", "boxes.nii", "-o", "a.3mf",
                      "--coordinates", "voxel")
-        self.refused(USAGE, "give -o a --format stl", "boxes.nii", "-o", "a.stl")
+        self.refused(USAGE, "give -o a --format ply", "boxes.nii", "-o", "a.ply")
+        self.refused(USAGE, "--scale, --fit: are for one file", "boxes.nii", "-o", "a", "--scale", "2")
         self.labels("boxes.nii", "-o", "{name}.glb", "--quiet")
         self.assertIn("boxes.glb", self.files())
 
@@ -216,7 +232,11 @@ class OutputTest(LabelsTest):
 
     def test_another_image_behind_the_regions(self):
         write_nifti(self.path("t1.nii"), Image((16, 14, 12), "h", list(range(16 * 14 * 12))))
-        self.labels("boxes.nii", "-o", "out", "--report", "page.html", "--volume", "t1.nii", "-q")
+        self.path("boxes.tsv").write_text("index\tname\n1\touter\n7\tinner\n")
+        self.labels("boxes.nii", "-o", "out", "--report", "page.html", "--volume", "t1.nii", "-q", "--labels", "7")
+        self.assertIn("outer (1) ", self.path("page.html").read_text())  # a neighbour that is not wanted
+        self.path("broken.nii").write_text("no map")
+        self.refused(BAD_INPUT, "none.nii", "broken.nii", "-o", "two", "--report", "p.html", "--volume", "none.nii")
         self.refused(USAGE, "--volume: is shown on the page", "boxes.nii", "-o", "two", "--volume",
                      "t1.nii")
 

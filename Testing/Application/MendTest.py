@@ -262,7 +262,10 @@ class Refusals(MendTest):
 
     def test_usage_and_bad_input(self):
         self.write("ball.off", BALL)
-        self.stays_out(USAGE, "--output is missing", "ball.off")
+        self.path("out").mkdir()
+        for output, file in (((), "ball-mended.off"), (("-o", "out"), "out/ball-mended.off")):
+            self.mend("ball.off", *output)
+            self.assertTrue(self.path(file).exists(), file)
         self.stays_out(USAGE, "MESH is missing")
         self.stays_out(USAGE, "--max-error", "ball.off", "--max-error", 0, "-o", "out.off")
         self.stays_out(BAD_INPUT, "", "none.off", "-o", "out.off")

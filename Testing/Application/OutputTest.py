@@ -100,6 +100,10 @@ class Names(ApplicationTest):
         self.assertEqual(self.names(), ["ball.v2-iso100.vtp", "scans"])
         self.assertIn("ball.v2-iso100.vtp", done.stdout)
         self.assertEqual(done.stderr, "")
+        for folder in ("scans", "scans/"):
+            self.mesh("scans/ball.v2.nii", "--iso", "100", "-o", folder)
+            self.path("scans/ball.v2-iso100.vtp").unlink()
+        self.assert_fails(BAD_INPUT, "new", "scans/ball.v2.nii", "--iso", "100", "-o", "new/")
 
     def test_isovalues_are_written_short(self):
         for text in ("100.50", "1e2", "+99", "101.0", "102.04567"):

@@ -360,13 +360,16 @@ class Refusals(SimplifyTest):
         super().setUp()
         self.write("a.off", icosphere(10, 1))
 
+    def test_default_is_in_the_current_folder(self):
+        self.simplify("a.off", "--max-error", "1")
+        self.assertTrue(self.path("a-simplified.off").exists())
+
     def test_usage(self):
         aim, out = ("--max-error", "1"), ("-o", "b.off")
         for pattern, arguments in (
                 ("MESH is missing", (*aim, *out)),
                 ("--max-error, --triangles or --reduction is missing", ("a.off", *out)),
                 ("two ways to ask", ("a.off", "--triangles", "5", "--reduction", "0.5", *out)),
-                ("--output is missing", ("a.off", *aim)),
                 ("--max-error 0: must be a number above 0, in mm", ("a.off", "--max-error", "0",
                                                                     *out)),
                 ("--max-error nan: must be", ("a.off", "--max-error", "nan", *out)),

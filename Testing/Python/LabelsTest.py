@@ -221,6 +221,15 @@ class Bytes(InFolder):
         self.compare(["--reduction", 0.7, "--labels", "2,7"], reduction=0.7, labels=(2, 7))
         self.compare(["--max-error", 0, "--coordinates", "voxel"], max_error=0, frame="voxel")
 
+    def test_of_one_file_of_all_regions(self):
+        walls = adaptiso.labels(self.input)
+        for name in ("body.glb", "body.3mf"):
+            program("adaptiso-labels", self.input, "-o", self.folder / name, "--quiet")
+            walls.save(self.folder / ("our" + name))
+            self.assertEqual((self.folder / ("our" + name)).read_bytes(), (self.folder / name).read_bytes())
+        with self.assertRaisesRegex(adaptiso.Error, "frame 'voxel': must be one of ras, lps, tkras"):
+            walls.save(self.folder / "body.glb", frame="voxel")
+
     def test_the_report_says_the_same(self):
         _, theirs = self.compare([])
         ours = adaptiso.labels(self.input).report

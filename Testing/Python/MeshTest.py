@@ -404,6 +404,9 @@ class Clients(InFolder):
         data = mesh.to_vtk()
         np.testing.assert_array_equal(vtk_to_numpy(data.GetPoints().GetData()), mesh.vertices)
         self.assertTrue(np.shares_memory(vtk_to_numpy(data.GetPoints().GetData()), mesh.vertices))
+        self.assertEqual(adaptiso.Mesh.from_vtk(data), mesh)
+        with self.assertRaisesRegex(adaptiso.Error, "^data 5: must be a vtkPolyData"):
+            adaptiso.Mesh.from_vtk(5)
         del mesh
         gc.collect()
         properties = vtkMassProperties()

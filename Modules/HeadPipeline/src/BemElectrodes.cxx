@@ -14,6 +14,7 @@ namespace adaptiso {
 namespace {
 
 constexpr double kMostMovedMm = 60, kMuchMovedMm = 10;
+constexpr std::ptrdiff_t kLeastHeadPoints = 20;  ///< that are fitted to the skin
 
 std::vector<Vec3> placesOf(const std::vector<NamedPoint>& points) {
     std::vector<Vec3> places;
@@ -144,13 +145,12 @@ void guess(BemModel& model, BemElectrodes& placed) {
 /// these are then the file's own.
 void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
                    AffineTransform& move, BemModel& model, BemElectrodes& placed) {
-    constexpr std::size_t kLeast = 20;
     constexpr double kOffMm = 5;
     std::vector<Vec3> headPoints;
     for (const NamedPoint& p : points) {
         if (p.kind == PointKind::Other) headPoints.push_back(p.point);
     }
-    if (headPoints.size() < kLeast) return;
+    if (std::ssize(headPoints) < kLeastHeadPoints) return;
     const SkinFit fit = fitToSkin(headPoints, model.meshes.back(), own, *placed.landmarks);
     move = fit.move;
     placed.headPoints = HeadPoints{std::ssize(headPoints), fit};
@@ -176,6 +176,12 @@ void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
                                                      "ears right?"});
 }
 
+/// The frame that is stated, or that the file says.
+std::optional<CoordinateFrame> frameOf(const BemModel& model) {
+    const std::optional<CoordinateFrame>& stated = model.options.electrodes.frame;
+    return stated ? stated : model.givenElectrodes.file->frame;
+}
+
 /// The file's points in the model's space.
 std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
     const std::string& name = model.givenElectrodes.fileName;
@@ -185,15 +191,14 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
     guessUnit(file, name, model);
     const std::optional<Landmarks> own = landmarksOf(file.points);
     AffineTransform move;
-    const std::optional<CoordinateFrame>& stated = model.options.electrodes.frame;
-    if (const auto frame = stated ? stated : file.frame) {
+    if (const auto frame = frameOf(model)) {
         move = toLps(*frame, model);
         if (own && !placed.landmarks) {
             placed.landmarks =
                 Landmarks{move(own->nasionMm), move(own->leftEarMm), move(own->rightEarMm)};
             placed.landmarkOrigin = "file";
         }
-    } else if (own) {
+    } else {
         if (!placed.landmarks) guess(model, placed);
         if (!placed.landmarks) {
             throw InvalidInput(
@@ -215,11 +220,6 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
             };
             carryUncertainty(*placed.landmarks, moved, electrodes, model, placed);
         }
-    } else {
-        throw InvalidInput(
-            "the file says no coordinate frame, and has no nasion and ears to find it by; state it "
-            "by --electrodes-in ras, lps or tkras (electrodes_in in Python), or of a template "
-            "whose names are of the 10-05 system take --montage (montage)");
     }
     for (NamedPoint& p : file.points) p.point = move(p.point);
     return file.points;
@@ -244,8 +244,7 @@ void requireAbove(const Landmarks& landmarks, const std::vector<Vec3>& places,
 
 void project(std::vector<NamedPoint> points, BemModel& model, BemElectrodes& placed) {
     removePlacesOfTheHead(points);
-    if (points.empty() && placed.headPoints) return;
-    if (points.empty()) throw InvalidInput("the file holds no electrode");
+    if (points.empty()) return;
     const std::vector<Vec3> places = placesOf(points);
     if (placed.landmarks) requireAbove(*placed.landmarks, places, "the electrodes");
     const TriangleMesh& skin = model.meshes.back();
@@ -316,6 +315,25 @@ std::vector<NamedPoint> BemElectrodes::all() const {
     list.push_back({"LPA", PointKind::LeftEar, landmarks->leftEarMm});
     list.push_back({"RPA", PointKind::RightEar, landmarks->rightEarMm});
     return list;
+}
+
+void checkElectrodes(const BemModel& model) {
+    if (!model.givenElectrodes.file) return;
+    const std::vector<NamedPoint>& points = model.givenElectrodes.file->points;
+    const auto count = [&](PointKind kind) {
+        return std::ranges::count(points, kind, &NamedPoint::kind);
+    };
+    const bool hasFrame = frameOf(model).has_value();
+    if (!hasFrame && !landmarksOf(points)) {
+        throw InvalidInput(
+            "the file says no coordinate frame, and has no nasion and ears to find it by; state it "
+            "by --electrodes-in ras, lps or tkras (electrodes_in in Python), or of a template "
+            "whose names are of the 10-05 system take --montage (montage)");
+    }
+    const bool hasHeadPoints = !hasFrame && count(PointKind::Other) >= kLeastHeadPoints;
+    if (count(PointKind::Electrode) == 0 && (!hasHeadPoints || !model.options.leadField.empty())) {
+        throw InvalidInput("the file holds no electrode");
+    }
 }
 
 void placeElectrodes(BemModel& model, const BemHooks& hooks) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/SourceError.h"
 #include "adaptiso/SurfaceChecks/Checks.h"
@@ -64,6 +65,22 @@ Fault faultOfNumbers(const BemModelOptions& options) {
     return std::nullopt;
 }
 
+/// All that a lead field lacks, in one line; empty: nothing.
+std::string missingForLeadField(const BemModelOptions& options, const BemRequest& request) {
+    const auto has = [&](std::string_view name) { return request.given.contains(name); };
+    const std::pair<bool, std::string> needs[] = {
+        {has("electrodes") || has("montage"), "{electrodes} or {montage}"},
+        {has("sources") || has("source-grid"), "{sources} or {source-grid}"},
+        {options.hasSkin(), "a skin (not with {meg})"},
+        {request.missingSolver.empty(), request.missingSolver},
+    };
+    std::string missing;
+    for (const auto& [isThere, need] : needs) {
+        if (!isThere) addPart(missing, need, "; ");
+    }
+    return missing;
+}
+
 Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request,
                     const BemNaming& naming) {
     const auto has = [&](std::string_view name) { return request.given.contains(name); };
@@ -84,6 +101,8 @@ Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request,
     const bool hasLabels = has("labels");
     const std::string presetOr = naming("preset") == naming("tissue") ? "" : "{preset}, or ";
     const std::string& preset = request.preset;
+    const std::string leadFieldNeeds =
+        has("lead-field") ? missingForLeadField(options, request) : "";
     const std::pair<bool, std::string> faults[] = {
         {withBrain && isOne, "{layers} 4 and {meg} exclude each other"},
         {withBrain && has("ct"),
@@ -106,10 +125,7 @@ Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request,
          "{surfaces} needs " + count + " files, inside out"},
         {has("sources") && (request.sources < 1 || request.sources > 2),
          "{sources} must be one or two surfaces"},
-        {has("lead-field") && !has("electrodes") && !has("montage"),
-         "{lead-field} needs {electrodes} or {montage}"},
-        {has("lead-field") && !has("sources") && !has("source-grid"),
-         "{lead-field} needs {sources} or {source-grid}"},
+        {!leadFieldNeeds.empty(), "{lead-field} needs " + leadFieldNeeds},
         {options.vertices.size() > 1 && options.vertices.size() != options.surfaceCount(),
          "{vertices} must be one number, or " + count},
     };

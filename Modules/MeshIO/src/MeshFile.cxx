@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "Bytes.h"
 #include "Codecs.h"
@@ -155,6 +156,24 @@ void scaleToUnitLength(std::vector<Normal>& normals) {
     }
 }
 
+/// ", meshes/*.stl" of a folder that holds such files; else empty.
+std::string filesToGive(const std::filesystem::path& folder) {
+    std::set<std::string> extensions;
+    std::error_code error;
+    for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end;
+         at.increment(error)) {
+        std::error_code unknown;
+        if (at->is_regular_file(unknown)) extensions.insert(at->path().extension().string());
+    }
+    for (const MeshFormat& format : meshFormats()) {
+        for (const std::string_view extension : format.extensions) {
+            if (!extensions.contains(std::string(extension))) continue;
+            return ", " + (folder / ("*" + std::string(extension))).string();
+        }
+    }
+    return {};
+}
+
 constexpr std::string_view kGzipMagic = "\x1F\x8B";
 
 /// By content, else by name. \throws FileError  neither says it
@@ -246,6 +265,17 @@ bool holdsScene(const MeshFormat& format) {
 void writeScene(std::vector<ScenePart> parts, const std::filesystem::path& path,
                 const MeshWriteOptions& options) {
     const MeshFormat& format = findMeshFormat(path);
+    if (!holdsScene(format)) {
+        TriangleMesh whole;
+        for (const auto& [name, color, mesh] : parts) {
+            const auto first = static_cast<VertexId>(whole.points.size());
+            whole.points.insert(whole.points.end(), mesh.points.begin(), mesh.points.end());
+            for (const Triangle& t : mesh.triangles) {
+                whole.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+            }
+        }
+        return writeMesh(whole, path, options);
+    }
     std::vector<meshio::MeshPart> encoded;
     for (ScenePart& part : parts) {
         requireWritable(part.mesh, format, options, path.string());
@@ -305,9 +335,8 @@ MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& opti
     const std::string name = path.string();
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) {
-        throw FileError(name +
-                        ": this is a folder, not a surface; give the files in it (of images "
-                        "adaptiso-mesh makes surfaces)");
+        throw FileError(name + ": this is a folder, not a surface; give the files in it" +
+                        filesToGive(path) + " (of images adaptiso-mesh makes surfaces)");
     }
     // images may be large: the head is enough
     const std::filesystem::path file = meshio::fiffPart(path).first;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include "Html.h"
@@ -47,19 +48,21 @@ struct StateWords {
 const StateWords& stateWords(RunState state) {
     static constexpr StateWords kWords[] = {
         {"failed", "✘&nbsp;FAILED", "failed"},
+        {"failed", "✘&nbsp;check FAILED", "with a failed check"},
         {"failed", "✘&nbsp;MISSING or CHANGED", "missing or changed"},
         {"noted", "▲&nbsp;not finished", "not finished"},
         {"failed", "✘&nbsp;not run", "not run"},
         {"noted", "▲&nbsp;done, unusual", "unusual"},
+        {"noted", "▲&nbsp;done, with warnings", "with warnings"},
         {"passed", "✔&nbsp;done", "done"}};
     return kWords[static_cast<std::size_t>(state)];
 }
 
-constexpr RunState kBad[] = {RunState::Failed, RunState::Changed, RunState::NotFinished,
-                             RunState::NotRun};
+constexpr RunState kBad[] = {RunState::Failed, RunState::CheckFailed, RunState::Changed,
+                             RunState::NotFinished, RunState::NotRun};
 
 bool isDone(const SummaryRow& row) {
-    return row.state == RunState::Done || row.state == RunState::Unusual;
+    return row.state >= RunState::Unusual;
 }
 
 std::int64_t countOf(const std::vector<SummaryRow>& rows, RunState state) {
@@ -348,6 +351,17 @@ struct Column {
     }
 };
 
+/// The result and, below it, the first warning.
+std::string resultOf(const SummaryRow& row) {
+    std::string html = escaped(row.says);
+    if (row.warnings.empty()) return html;
+    addPart(html,
+            "▲ " + counted(std::ssize(row.warnings), "warning") + ": " +
+                escaped(row.warnings.front().text),
+            "<br>");
+    return html;
+}
+
 std::vector<Column> columnsOf(const Summary& summary, const fs::path& page) {
     const std::vector<SummaryRow>& rows = summary.rows;
     const bool hasProgram = programOf(rows).empty();
@@ -362,7 +376,7 @@ std::vector<Column> columnsOf(const Summary& summary, const fs::path& page) {
     for (const SummaryRow& row : rows) {
         program.cells.push_back(hasProgram ? escaped(row.program) : "");
         input.cells.push_back(hasInput ? escaped(row.file) : "");
-        result.cells.push_back(escaped(row.says));
+        result.cells.push_back(resultOf(row));
         files.cells.push_back(filesOf(row, page));
         picture.cells.push_back(thumbnail(row, page));
         const bool isKnown = hasVolume && !row.volumesMm3.empty();
@@ -430,8 +444,17 @@ std::string verdictOf(const std::vector<SummaryRow>& rows) {
                           stateWords(state).counted);
     }
     if (text.empty()) text = rows.empty() ? "Nothing was run" : "All " + all + " done";
-    const std::int64_t unusual = countOf(rows, RunState::Unusual);
-    return text + (unusual == 0 ? "" : ", " + std::to_string(unusual) + " unusual");
+    for (const RunState state : {RunState::Unusual, RunState::Warned}) {
+        const std::int64_t count = countOf(rows, state);
+        if (count > 0) addPart(text, std::to_string(count) + " " + stateWords(state).counted);
+    }
+    return text;
+}
+
+void sortByNeed(std::vector<SummaryRow>& rows) {
+    std::stable_sort(rows.begin(), rows.end(), [](const SummaryRow& a, const SummaryRow& b) {
+        return a.state != b.state ? a.state < b.state : a.warnings.size() > b.warnings.size();
+    });
 }
 
 std::vector<SummaryReason> reasonsOf(const std::vector<SummaryRow>& rows) {
@@ -439,7 +462,9 @@ std::vector<SummaryReason> reasonsOf(const std::vector<SummaryRow>& rows) {
     for (const SummaryRow& row : rows) {
         const std::string& name = row.file.empty() ? row.name : row.file;
         if (!isDone(row)) byReason[{false, row.reason}].push_back(name);
-        for (const std::string& code : row.warnings) byReason[{true, code}].push_back(name);
+        std::set<std::string> codes;
+        for (const Warning& warning : row.warnings) codes.insert(warning.code);
+        for (const std::string& code : codes) byReason[{true, code}].push_back(name);
     }
     std::vector<SummaryReason> reasons;
     for (auto& [of, names] : byReason) reasons.push_back({of.second, std::move(names), of.first});

@@ -249,6 +249,10 @@ TEST(Scene, PartsComeBackInPlaceWithTheirColours) {
         EXPECT_EQ(bytesOf(path), once);
     }
     EXPECT_FALSE(holdsScene(findMeshFormat("all.ply")));
+    const auto whole = temporaryFile("all.ply");
+    writeScene(twoParts(), whole, inLps());
+    EXPECT_EQ(readMesh(whole).mesh.points.size(), 4U + 42U);
+    EXPECT_EQ(readMesh(whole).mesh.triangles.size(), 4U + 80U);
     std::vector<ScenePart> named = twoParts();
     named[0].name = std::string(199, 'a') + "\xE8\x84\xB3";  // cut within a character
     const auto path = temporaryFile("named.3mf");

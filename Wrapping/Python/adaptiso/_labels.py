@@ -13,11 +13,11 @@ import numpy.typing as npt
 from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, count, is_path, listed, path as checked_path,
-                         progress as checked_progress, shown, threads as checked_threads, warn)
+                         progress as checked_progress, shown, threads as checked_threads, warn, word)
 from ._images import Samples, base_name, read_only, samples_of
 from ._mesh import IN_VOXELS, Mesh, is_identity
 from ._options import checked, takes
-from ._triangles import Triangles
+from ._triangles import FRAMES, Triangles
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -165,16 +165,17 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         self.walls.plot(file, **options)
 
     def save(self, path: Any, frame: Optional[str] = None) -> None:
-        """Write the walls as a .vtp with the arrays label0 and label1 of its cells: walls.vtp of
-        the program adaptiso-labels, to the byte. The file is whole or not there. Regions are saved
-        by ``region(label).save(path)``, in any format.
+        """Write the walls as a .vtp with the arrays label0 and label1 of its cells, or all regions
+        with names and colours as .glb or .3mf: the files of the program adaptiso-labels, to the byte.
+        The file is whole or not there. One region is saved by ``region(label).save(path)``, in any
+        format.
 
         Parameters
         ----------
         path : str or path
-            With the extension .vtp.
+            With the extension .vtp, .glb or .3mf.
         frame : {"ras", "lps", "tkras", "voxel"}, optional
-            Of the points written; default "ras".
+            Of the points written; default "ras". Only .vtp holds voxel indices.
 
         Raises
         ------
@@ -182,9 +183,15 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
             Another extension, a frame that can't be had, a file that can't be written.
         """
         name = checked_path("path", path)
+        if name.lower().endswith((".glb", ".3mf")):
+            if frame is not None:
+                word("frame", frame, FRAMES[:3])
+            self._data.write_regions(name, frame, [(region.label, region.name, region.color)
+                                                   for region in self.regions.values()])
+            return
         if not name.lower().endswith(".vtp"):
-            raise Error(f"{name}: walls are saved as .vtp; region(label).save(path) takes others; "
-                        "the program adaptiso-labels writes all regions into a .glb or .3mf")
+            raise Error(f"{name}: walls are saved as .vtp, all regions as .glb or .3mf; "
+                        "region(label).save(path) takes others")
         self._save(name, frame)
 
     def __len__(self) -> int:

@@ -89,6 +89,21 @@ class Mesh(Triangles[_adaptiso.MeshData]):
             data.report = json.dumps(report)
         return mesh
 
+    @classmethod
+    def from_vtk(cls, data: Any) -> "Mesh":
+        """The mesh of a vtkPolyData, or PyVista's, of triangles in RAS mm, with its normals at points;
+        copied.
+
+        Raises
+        ------
+        Error
+            Other data, polygons, strips, and as of ``Mesh(vertices, faces)``.
+        """
+        if not hasattr(data, "GetPolys"):
+            raise Error(f"data {shown(data)}: must be a vtkPolyData")
+        from ._vtk_data import arrays_of, normals_of
+        return cls(*arrays_of(data), normals_of(data))
+
     @property
     def normals(self) -> Vertices:
         """float64, shape (n, 3), unit vectors that point outside; shape (0, 3) where the mesh has

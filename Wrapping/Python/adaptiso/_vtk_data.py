@@ -42,6 +42,12 @@ def arrays_of(data: Any) -> Tuple[Any, Any]:
             vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3))
 
 
+def normals_of(data: Any) -> Any:
+    """Those at the points of a vtkPolyData, or None."""
+    normals = data.GetPointData().GetNormals()
+    return None if normals is None else vtk_to_numpy(normals)
+
+
 def fill(output: Any, meshes: List[Any], turn: Any, with_normals: bool) -> None:
     """Puts meshes into a vtkPolyData, one behind the other. \\param turn  signs of x, y, z, or None"""
     def joined(parts: List[Any], dtype: Any) -> Any:

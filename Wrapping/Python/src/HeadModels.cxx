@@ -211,14 +211,18 @@ std::vector<TriangleMesh> firstSurfaces(const HeadSources& sources, BemModel& mo
     }
 }
 
-void putElectrodes(BemModel& model, const BemHooks& hooks) {
-    if (!model.hasModel() || !model.wantsElectrodes()) return;
+void namingElectrodes(const BemModel& model, const std::function<void()>& work) {
     try {
-        placeElectrodes(model, hooks);
+        work();
     } catch (const InvalidInput& error) {
         throw InvalidInput((model.givenElectrodes.file ? "electrodes: " : "montage: ") +
                            std::string(error.what()));
     }
+}
+
+void putElectrodes(BemModel& model, const BemHooks& hooks) {
+    if (!model.hasModel() || !model.wantsElectrodes()) return;
+    namingElectrodes(model, [&] { placeElectrodes(model, hooks); });
 }
 
 void putSources(BemModel& model, const BemHooks& hooks) {
@@ -258,6 +262,7 @@ std::shared_ptr<HeadModelData> HeadModelData::make(const HeadSources& sources,
                                  timer.time(stage, work);
                              },
                              watcher.callback()};
+        namingElectrodes(model, [&] { checkElectrodes(model); });
         std::vector<TriangleMesh> dense = firstSurfaces(sources, model, hooks);
         const auto& image = model.image ? model.image : model.tkRasVolume;
         model.pial = cortexOf(sources.pial, image);

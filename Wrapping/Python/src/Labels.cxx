@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,10 +18,13 @@
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ImageGeometry.h"
+#include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/Json/Json.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
+#include "adaptiso/MeshIO/Scene.h"
 #include "adaptiso/SurfacePipeline/LabelsJson.h"
+#include "adaptiso/SurfacePipeline/StoredMesh.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::python {
@@ -57,6 +61,13 @@ public:
 
     /// walls.vtp of adaptiso-labels. \return as MeshData::write()
     std::string write(const std::string& path, std::optional<CoordinateFrame> frame) const;
+
+    /// All regions in one file of scenes, as adaptiso-labels writes them.
+    /// \param regions  label, name and colour of each, by label
+    /// \throws InvalidInput  digits of the format that do not do, a frame that it can't hold;
+    /// FileError
+    void writeRegions(const std::string& path, std::optional<CoordinateFrame> frame,
+                      const std::vector<std::tuple<Label, std::string, LabelColor>>& regions) const;
 
 private:
     LabelComplex complex_;
@@ -138,6 +149,36 @@ std::string LabelData::write(const std::string& path, std::optional<CoordinateFr
         arrays[side].values = std::move(values);
     }
     return walls()->write(path, frame, std::move(arrays));
+}
+
+void LabelData::writeRegions(
+    const std::string& path, std::optional<CoordinateFrame> frame,
+    const std::vector<std::tuple<Label, std::string, LabelColor>>& regions) const {
+    const MeshFormat& format = findMeshFormat(path);
+    MeshWriteOptions options;
+    options.frame = frame.value_or(format.defaultFrame);
+    options.volume = frameVolume(options.frame, image_);
+    TriangleMesh walls{complex_.points, {}, complex_.triangles};
+    turnXY(walls.points);
+    const RoundingHarm harm =
+        settleRounding(walls, format.precision, lpsToFrame(options.frame, options.volume));
+    if (harm) throw InvalidInput(path + ": " + textOf(harm, format));
+    const LabelComplex settled{std::move(walls.points), std::move(walls.triangles),
+                               complex_.labels};
+    std::vector<Label> labels;
+    for (const auto& region : regions) labels.push_back(std::get<Label>(region));
+    const RegionSurfaces surfaces(settled, labels);
+    std::vector<ScenePart> parts;
+    for (std::size_t n = 0; n < regions.size(); ++n) {
+        TriangleMesh surface = surfaces.surface(n);
+        if (format.holdsNormals) surface.normals = areaWeightedNormals(surface);
+        parts.push_back({std::get<std::string>(regions[n]), std::get<LabelColor>(regions[n]),
+                         std::move(surface)});
+    }
+    AtomicOutput output(path);
+    output.write(
+        [&](const std::filesystem::path& file) { writeScene(std::move(parts), file, options); });
+    AtomicOutput::commit({&output, 1});
 }
 
 namespace {
@@ -229,7 +270,17 @@ void declareLabelData(py::module_& module) {
                 const Unlocked unlocked;
                 return self.write(path, wanted);
             },
-            py::arg("path"), py::arg("frame"));
+            py::arg("path"), py::arg("frame"))
+        .def(
+            "write_regions",
+            [](const LabelData& self, const std::string& path,
+               const std::optional<std::string>& frame,
+               const std::vector<std::tuple<Label, std::string, LabelColor>>& regions) {
+                const auto wanted = frameOf(frame);
+                const Unlocked unlocked;
+                self.writeRegions(path, wanted, regions);
+            },
+            py::arg("path"), py::arg("frame"), py::arg("regions"));
 }
 
 }  // namespace

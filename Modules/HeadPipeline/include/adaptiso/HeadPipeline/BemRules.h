@@ -34,9 +34,10 @@ inline constexpr const char* kConductivityRule =
 struct BemRequest {
     std::set<std::string, std::less<>> given;  ///< inputs and options: "t1", "brain-mask"
     TissueLabels tissues;
-    std::size_t surfaces = 0;  ///< ready ones
-    std::size_t sources = 0;   ///< surfaces of the cortex
-    std::string preset{};      ///< whose tissues; empty: none
+    std::size_t surfaces = 0;     ///< ready ones
+    std::size_t sources = 0;      ///< surfaces of the cortex
+    std::string preset{};         ///< whose tissues; empty: none
+    std::string missingSolver{};  ///< programs of {lead-field} that are not installed
 };
 
 /// Writes the name of an option ("max-skull") as the user knows it.

@@ -20,10 +20,9 @@ struct ScenePart {
 /// True for GLB and 3MF, which hold several surfaces with their names and colours.
 bool holdsScene(const MeshFormat& format);
 
-/// Writes surfaces into one file: a node each in GLB, an object each in 3MF. readMesh() reads them
-/// as one surface.
-/// \param options  as writeMesh() takes them, without arrays
-/// \throws InvalidInput, FileError  as writeMesh() \pre holdsScene() of the name's format
+/// Writes surfaces into one file: a node each in GLB, an object each in 3MF, in other formats as
+/// one surface without names and colours, which is what readMesh() reads of all. \param options  as
+/// writeMesh() takes them, without arrays \throws InvalidInput, FileError  as writeMesh()
 void writeScene(std::vector<ScenePart> parts, const std::filesystem::path& path,
                 const MeshWriteOptions& options = {});
 

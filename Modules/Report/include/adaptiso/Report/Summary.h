@@ -6,16 +6,19 @@
 #include <vector>
 
 #include "adaptiso/Core/Outliers.h"
+#include "adaptiso/Core/Warning.h"
 
 namespace adaptiso {
 
 /// The state of a run, the worst first.
 enum class RunState {
     Failed,
+    CheckFailed,  ///< finished, with a failed check
     Changed,      ///< done, but an output or an input is gone or has changed since
     NotFinished,  ///< started, or its record can't be read
     NotRun,       ///< only its input is there
     Unusual,      ///< done, and unlike the others' results
+    Warned,       ///< done, with warnings
     Done,
 };
 
@@ -30,12 +33,15 @@ struct SummaryRow {
     std::string date{};    ///< of the run's end, ISO 8601; may be empty
     double seconds = 0;
     std::vector<std::filesystem::path> outputs{};
-    std::filesystem::path report{};       ///< a page of --report; may be empty
-    std::filesystem::path pictures{};     ///< a folder of --pictures; may be empty
-    std::vector<std::string> warnings{};  ///< codes, without notes, each once
+    std::filesystem::path report{};    ///< a page of --report; may be empty
+    std::filesystem::path pictures{};  ///< a folder of --pictures; may be empty
+    std::vector<Warning> warnings{};   ///< without notes
     /// Name (may be empty) and volume of each of its surfaces.
     std::vector<std::pair<std::string, double>> volumesMm3{};
 };
+
+/// What must be looked at first comes first: by state, then by the number of warnings.
+void sortByNeed(std::vector<SummaryRow>& rows);
 
 /// "1 failed: closed: a.stl": how many runs of which reason or warning, and which, most first.
 struct SummaryReason {
