@@ -293,6 +293,14 @@ class FourLayers(InFolder):
                          [(4, 0.43), (3, 0.0041), (1, 0.33)])
         self.assertIn("brain of 162 vertices", repr(model))
 
+    def test_five_have_white_matter(self):
+        model = adaptiso.bem(labels=spheres((5, 1, 2, 3, 4), (44, 52, 60, 66, 72)), tissues={**FOUR, "white": [5]},
+                             affine=affine(), layers=5, **QUICK)
+        self.assertEqual(tuple(model.surfaces), adaptiso._bem.SURFACES)
+        self.assertEqual(model.report["options"]["conductivity"],
+                         {"white": 0.126, "brain": 0.275, "csf": 1.654, "skull": 0.01, "scalp": 0.465})
+        self.assertEqual([surface["sigma"] for surface in model.to_mne()], [0.465, 0.01, 0.275])
+
     @needs("nibabel")
     def test_bytes_are_the_program_s(self):
         import nibabel
