@@ -198,7 +198,7 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
         "each "
         "surface, inside out: N,N,N");
     mesh.count(
-        "--most-vertices", options.model.mostVertices, 168, 4 * kMostBemVertices,
+        "--most-vertices", options.model.mostVertices, 168, kHeadSurfaceCount * kMostBemVertices,
         "With --layers 4 or 5, without --vertices and --edge-length: at most N vertices in all "
         "(default: 10000)");
     mesh.value(

@@ -10,13 +10,13 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/HeadPipeline/BemChecks.h"
+#include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/BemSources.h"
 
 namespace adaptiso {
 namespace {
 
 constexpr std::int64_t kDefaultVertices = 2562;
-constexpr std::int64_t kMostVertices = 200'000;  // no solver takes as many
 constexpr double kFitMm = 0.5;
 /// Files keep floats: a gap must not fall short by their rounding (3e-5 mm at 500 mm).
 constexpr double kRoundingMm = 1e-4;
@@ -55,9 +55,9 @@ void requireFewVertices(const TriangleMesh& mesh, const BemModel& model, std::si
     // equilateral triangles, two a vertex, with the longest edges allowed
     const double longestMm = options.edgeLengthMm->maximumMm;
     const double least = surfaceArea(mesh) / (std::sqrt(3.0) / 2 * longestMm * longestMm);
-    if (least <= kMostVertices) return;
+    if (least <= kMostBemVertices) return;
     throw InvalidInput("edges of at most " + formatShort(longestMm) + " mm make more than " +
-                       formatCount(kMostVertices) + " vertices of " +
+                       formatCount(kMostBemVertices) + " vertices of " +
                        bemSurfaceName(n, model.surfaces.size()) + "; they must be longer");
 }
 
