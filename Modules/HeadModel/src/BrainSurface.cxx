@@ -124,8 +124,8 @@ std::vector<float> whiteSolid(std::vector<float> part, const ImageGeometry& grid
     for (std::size_t n = 0; n < part.size(); ++n) {
         if (whole[n] != 0 && shut[n] == 0) part[n] = 1;
     }
-    // a fold holds two banks of cortex and a sulcus; hemispheres are joined before the largest piece
-    // is chosen
+    // a fold holds two banks of cortex and a sulcus; hemispheres are joined before the largest
+    // piece is chosen
     const Mask joined = closed(above(part, kFractionIsovalue), grid, std::max(2 * sulciMm, 1.0));
     for (std::size_t n = 0; n < part.size(); ++n) {
         if (joined[n] != 0 && part[n] < kFractionIsovalue) part[n] = 1;

@@ -42,8 +42,8 @@ std::vector<float> whiteMatterPart(const BrainSources& sources, const ImageGeome
                                    const BoundaryOptions& options, std::vector<std::string>& notes,
                                    std::vector<Vec3>& seenMm);
 
-/// One raw solid of white matter: folds narrower than four times sulciMm (2 mm at least), and what is
-/// shut off by doors narrower than 6 mm, are filled; then its largest piece. Volumes are noted.
+/// One raw solid of white matter: folds narrower than four times sulciMm (2 mm at least), and what
+/// is shut off by doors narrower than 6 mm, are filled; then its largest piece. Volumes are noted.
 /// \throws InvalidInput  more than a fifth of it is apart from the largest piece
 std::vector<float> whiteSolid(std::vector<float> part, const ImageGeometry& grid,
                               const std::vector<std::uint8_t>& faces, double sulciMm,

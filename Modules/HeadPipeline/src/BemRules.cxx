@@ -189,8 +189,9 @@ const Options<BoundaryOptions>& boundaryOptions() {
             {.name = "sulci",
              .key = "sulciMm",
              .valueName = "MM",
-             .help = "Sulci of the brain's own surface narrower than twice this, and folds of white "
-                     "matter narrower than four times this, are closed",
+             .help =
+                 "Sulci of the brain's own surface narrower than twice this, and folds of white "
+                 "matter narrower than four times this, are closed",
              .standard = "3",
              .rule = lengthTo(30)}),
         option<&BoundaryOptions::smoothingMm>(
