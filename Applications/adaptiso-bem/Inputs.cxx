@@ -111,6 +111,10 @@ HeadBoundaries boundariesFromImages(BemRun& run, const BemHooks& hooks) {
         if (!options.pial.empty()) {
             images.brain.pial = readCortex(run, options.pial, "--pial", "pial surface", 0);
         }
+        if (!options.white.empty()) {
+            images.brain.white =
+                readCortex(run, options.white, "--white", "white surface", options.pial.size());
+        }
     });
     run.model.pial = images.brain.pial;
     readSources(run);
@@ -150,8 +154,9 @@ void readSources(BemRun& run) {
     const BemOptions& options = run.options;
     if (options.sources.empty()) return;
     run.timer.time("read", [&] {
-        run.model.cortex = readCortex(run, options.sources, "--sources", "source surface",
-                                      options.surfaces.size() + options.pial.size());
+        run.model.cortex =
+            readCortex(run, options.sources, "--sources", "source surface",
+                       options.surfaces.size() + options.pial.size() + options.white.size());
     });
 }
 

@@ -39,8 +39,9 @@ BemSource sourceOf(const BemOptions& options) {
 std::vector<fs::path> inputsOf(const BemOptions& options) {
     std::vector<fs::path> inputs = options.probabilities;
     inputs.insert(inputs.end(), options.surfaces.begin(), options.surfaces.end());
-    inputs.insert(inputs.end(), options.pial.begin(), options.pial.end());
-    inputs.insert(inputs.end(), options.sources.begin(), options.sources.end());
+    for (const auto* list : {&options.pial, &options.white, &options.sources}) {
+        inputs.insert(inputs.end(), list->begin(), list->end());
+    }
     for (const fs::path& path :
          {options.t1, options.brainMask, options.aseg, options.lesion, options.labels,
           options.headMask, options.ct, options.volume, options.electrodes}) {

@@ -24,13 +24,14 @@ struct BemOptions {
     std::filesystem::path ct;
     std::vector<std::filesystem::path> surfaces;
 
-    /// Frames of the surface, pial and source files, in this order. Empty: as the files say.
+    /// Frames of the surface, pial, white and source files, in this order. Empty: as the files say.
     std::vector<CoordinateFrame> inputCoordinates;
 
     std::filesystem::path brainMask;             ///< with t1
     std::filesystem::path aseg;                  ///< with t1
     std::filesystem::path lesion;                ///< with t1
     std::vector<std::filesystem::path> pial;     ///< with t1
+    std::vector<std::filesystem::path> white;    ///< with t1
     std::vector<std::filesystem::path> sources;  ///< the cortex, for sources; two at most
     TissueLabels tissues;                        ///< with labels
     std::string preset;                          ///< whose; empty: none

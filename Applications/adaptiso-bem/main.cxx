@@ -68,12 +68,13 @@ void addTissue(TissueLabels& tissues, const std::string& text) {
     const auto refuse = [&] {
         throw UsageError(
             "--tissue " + text +
-            ": must be brain, csf, skull or scalp, '=', and labels with commas between "
+            ": must be white, brain, csf, skull or scalp, '=', and labels with commas between "
             "them: brain=1,2,3");
     };
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
-    std::vector<std::int64_t>* const list = name == "brain"   ? &tissues.brain
+    std::vector<std::int64_t>* const list = name == "white"   ? &tissues.white
+                                            : name == "brain" ? &tissues.brain
                                             : name == "csf"   ? &tissues.csf
                                             : name == "skull" ? &tissues.skull
                                             : name == "scalp" ? &tissues.scalp
@@ -93,6 +94,7 @@ void addPreset(TissueLabels& tissues, const TissueLabels& preset) {
     const auto add = [](std::vector<std::int64_t>& to, const std::vector<std::int64_t>& from) {
         to.insert(to.end(), from.begin(), from.end());
     };
+    add(tissues.white, preset.white);
     add(tissues.brain, preset.brain);
     add(tissues.csf, preset.csf);
     add(tissues.skull, preset.skull);
@@ -109,14 +111,17 @@ void declareInput(CLI::App& app, BemOptions& options) {
     input.text(
         "--aseg", "IMG", options.aseg,
         "With --t1: FreeSurfer's or FastSurfer's aseg; serves as brain mask if none is given, "
-        "and with --layers 4 the brain's own surface");
+        "and with --layers 4 or 5 the surfaces of brain and white matter");
     input.text("--lesion", "IMG", options.lesion,
                "With --t1: a mask of lesions (tumour, cavity, bleeding) within the skull; they "
                "count as brain, whatever their grey values");
     input.text(
         "--pial", "MESH...", options.pial,
         "With --t1: the cortex (lh.pial rh.pial), which the inner skull then holds, and with "
-        "--layers 4 the brain's own surface");
+        "--layers 4 or 5 the brain's own surface");
+    input.text("--white", "MESH...", options.white,
+               "With --t1 and --layers 5: the white matter's surfaces (lh.white rh.white), besides "
+               "--aseg's labels or instead");
     input.text("--labels", "IMG", options.labels,
                "A segmentation; --tissue or --preset names its tissues");
     input.values(
@@ -124,16 +129,16 @@ void declareInput(CLI::App& app, BemOptions& options) {
         [&options](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) addTissue(options.tissues, text);
         },
-        "Labels of a tissue: brain=1,2,3 (CSF included, or named apart: brain=1,2 csf=3), "
-        "skull=4, "
-        "scalp=5; one --tissue each");
+        "Labels of a tissue: brain=1,2,3 (CSF and white matter included, or named apart: white=1 "
+        "brain=2 csf=3), skull=4, scalp=5; one --tissue each");
     input.value(
         "--preset", choiceName(kPresets),
         [&options](const std::string& text) {
             options.preset = kPresets[parseChoice("--preset", text, kPresets)];
             addPreset(options.tissues, tissuePreset(options.preset));
         },
-        "The labels of SimNIBS's charm or headreco, of FreeSurfer's aseg, of SAMSEG, or of "
+        "The labels of SimNIBS's charm or headreco, of GRACE, of FreeSurfer's aseg, of SAMSEG or "
+        "SynthSeg, or of "
         "TotalSegmentator (task total: brain and skull; with --head-mask)");
     input.text("--head-mask", "IMG", options.headMask,
                "With --labels: a mask of all that lies within the skin (TotalSegmentator's body), "
@@ -143,12 +148,12 @@ void declareInput(CLI::App& app, BemOptions& options) {
     input.text("--ct", "IMG", options.ct, "A CT of the whole head, in Hounsfield units");
     input.text("--surfaces", "MESH...", options.surfaces,
                "Ready surfaces, inside out: INNER OUTER SKIN (INNER alone with --meg, BRAIN "
-               "INNER OUTER "
-               "SKIN with --layers 4); "
+               "INNER OUTER SKIN with --layers 4, the white matter before these with 5); "
                "checked, mended where need be, and kept as they are where not");
-    declareInputCoordinates(input, options.inputCoordinates,
-                            "the surfaces of --surfaces, --pial and --sources; given once for "
-                            "each, in this order, that of each");
+    declareInputCoordinates(
+        input, options.inputCoordinates,
+        "the surfaces of --surfaces, --pial, --white and --sources; given once for "
+        "each, in this order, that of each");
     input.text("--volume", "IMG", options.volume,
                "With --surfaces: the image they belong to, for tkRAS and voxel coordinates");
     declareReadOptions(app, options.read, kInput);
@@ -158,21 +163,22 @@ void declareHead(CLI::App& app, BemOptions& options) {
     const OptionGroup group(app, kHead);
     BemModelOptions& model = options.model;
     group.value(
-        "--layers", "1|3|4",
+        "--layers", "1|3|4|5",
         [&model](const std::string& text) {
-            const std::vector<std::string> counts{"1", "3", "4"};
+            const std::vector<std::string> counts{"1", "3", "4", "5"};
             setLayers(model, counts[parseChoice("--layers", text, counts)].front() - '0');
         },
         "3 (default): inner skull, outer skull, skin; 4: the brain within the inner skull as "
-        "well, CSF between them; 1: as --meg");
+        "well, CSF between them; 5: the white matter within the brain too; 1: as --meg");
     group.flag("--meg", model.boundaries.innerSkullOnly, "The inner skull alone");
     group.value(
-        "--min-gap", "MM[,MM[,MM]]",
+        "--min-gap", "MM[,MM[,MM[,MM]]]",
         [&model](const std::string& text) {
             takeNumbers("--min-gap", text, ',', kMinGapRule,
                         [&](const auto& gaps) { return setMinGaps(model, gaps); });
         },
-        "Least thickness of skull, scalp and (with --layers 4) CSF, guaranteed (default: 2,2,1)");
+        "Least thickness of skull, scalp and (with --layers 4) CSF and (with 5) grey matter, "
+        "guaranteed (default: 2,2,1,1)");
     group.rows(boundaryOptions(), model.boundaries);
 }
 
@@ -189,11 +195,13 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
             }
         },
         "Vertices of each surface, evenly spread: 642, 1281, 2562 or any number (default: 2562; "
-        "with --layers 4 by the layers' thickness, 10,000 in all at most); or one number for each "
+        "with --layers 4 or 5 by the layers' thickness, 10,000 in all at most); or one number for "
+        "each "
         "surface, inside out: N,N,N");
-    mesh.count("--most-vertices", options.model.mostVertices, 168, 4 * kMostBemVertices,
-               "With --layers 4, without --vertices and --edge-length: at most N vertices in all "
-               "(default: 10000)");
+    mesh.count(
+        "--most-vertices", options.model.mostVertices, 168, kHeadSurfaceCount * kMostBemVertices,
+        "With --layers 4 or 5, without --vertices and --edge-length: at most N vertices in all "
+        "(default: 10000)");
     mesh.value(
         "--edge-length", "MIN:MAX",
         [&options](const std::string& text) {
@@ -204,13 +212,14 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
         "Adaptive: edges of MIN mm where a surface bends or another is near, up to MAX mm; with "
         "--vertices lengths are scaled to reach that number");
     mesh.value(
-        "--conductivity", "BRAIN,[CSF,]SKULL,SCALP",
+        "--conductivity", "[WHITE,]BRAIN,[CSF,]SKULL,SCALP",
         [&options](const std::string& text) {
             takeNumbers("--conductivity", text, ',', kConductivityRule, [&](const auto& sigmas) {
                 return setConductivities(options.model, sigmas);
             });
         },
-        "Conductivities in S/m (default: 0.3,0.006,0.3; with --layers 4: 0.3,1.79,0.006,0.3)");
+        "Conductivities in S/m (default: 0.3,0.006,0.3; with --layers 4: 0.3,1.79,0.006,0.3; with "
+        "5, BRAIN being grey matter: 0.126,0.275,1.654,0.01,0.465)");
 }
 
 void declareOutput(CLI::App& app, BemOptions& options) {
@@ -226,9 +235,9 @@ void declareOutput(CLI::App& app, BemOptions& options) {
         "-s,--subject", "NAME", options.subject,
         "A subject of FreeSurfer: the .surf files are put into its folder bem as well. Without an "
         "image --t1 is its mri/T1.mgz, --brain-mask its mri/brainmask.mgz (--aseg its mri/aseg.mgz "
-        "without that, or with --layers 4) and, without --input-coordinates, --pial its "
-        "surf/?h.pial and, "
-        "for --lead-field, --sources its surf/?h.white; -o is SUBJECT/adaptiso-bem by default");
+        "without that, or with --layers 4 or 5) and, without --input-coordinates, --pial its "
+        "surf/?h.pial, with --layers 5 --white its surf/?h.white and, for --lead-field, --sources "
+        "its surf/?h.white; -o is SUBJECT/adaptiso-bem by default");
     output.choice<OpenMeegUnit>(
         "--units", options.files.unit,
         {{"mm", OpenMeegUnit::Millimetres}, {"m", OpenMeegUnit::Metres}},
@@ -309,6 +318,8 @@ void declareToolboxes(CLI::App& app, BemOptions& options) {
     addFlag("--brainstorm", files.writesBrainstorm,
             "Brainstorm: tess_innerskull_bem.mat, ... (scanner RAS, metres)");
     addFlag("--simnibs", files.writesSimNibs, "SimNIBS: csf.stl, bone.stl, skin.stl (scanner RAS)");
+    addFlag("--bem-fmm", files.writesBemFmm,
+            "BEM-FMM: tissue_index.txt with the same .stl files, and headmodel.mat");
     addFlag("--besa", files.writesBesa,
             "BESA: head.sfp (landmarks, electrodes, points of the skin)");
     addFlag("--gifti", files.writesGifti, "Viewers: .gii");
@@ -353,13 +364,15 @@ void takeSubject(BemOptions& options) {
         }
     };
     if (options.aseg.empty()) take(options.brainMask, {"mri/brainmask.mgz"});
-    if (options.brainMask.empty() || options.model.boundaries.withBrain) {
+    if (options.brainMask.empty() || options.model.boundaries.innerSurfaces > 0) {
         take(options.aseg, {"mri/aseg.mgz"});
     }
     if (!options.inputCoordinates.empty()) return;  // which are those of files that the user names
     take(options.pial, {"surf/lh.pial", "surf/rh.pial"});
+    const Paths white{"surf/lh.white", "surf/rh.white"};
+    if (options.model.boundaries.innerSurfaces > 1) take(options.white, white);
     if (!options.model.leadField.empty() && !options.model.sources.gridMm) {
-        take(options.sources, {"surf/lh.white", "surf/rh.white"});
+        take(options.sources, white);
     }
 }
 
@@ -378,12 +391,15 @@ void checkCombinations(const CLI::App& app, const BemOptions& options) {
     // of --subject
     if (!options.t1.empty()) request.given.insert("t1");
     if (!options.brainMask.empty()) request.given.insert("brain-mask");
+    if (!options.aseg.empty()) request.given.insert("aseg");
+    if (!options.white.empty()) request.given.insert("white");
     if (!options.sources.empty()) request.given.insert("sources");
     const std::string fault =
         bemFault(options.model, request, [](const std::string& name) { return "--" + name; });
     require(fault.empty(), fault);
-    checkInputCoordinates(options.inputCoordinates,
-                          options.surfaces.size() + options.pial.size() + options.sources.size());
+    checkInputCoordinates(options.inputCoordinates, options.surfaces.size() + options.pial.size() +
+                                                        options.white.size() +
+                                                        options.sources.size());
     const bool namesLandmarks = options.nasion || options.leftEar || options.rightEar;
     require(!namesLandmarks || (options.nasion && options.leftEar && options.rightEar),
             "--nasion, --left-ear and --right-ear need each other");

@@ -82,10 +82,41 @@ class Model(BemTest):
         again = self.report("again")["surfaces"]
         self.assertEqual([(s["vertices"], s["denseTriangles"]) for s in again], [(162, 0)] * 4)
 
+    def test_five_layers(self):
+        radii = (46, 54, 60, 66, 72)
+        write_nifti(self.path("seg.nii"), head(radii=radii, values=(5, 4, 1, 2, 3)))
+        tissues = [word for pair in ("white=5", "brain=4", "csf=1", "skull=2", "scalp=3")
+                   for word in ("--tissue", pair)]
+        self.bem("--labels", "seg.nii", *tissues, "--layers", "5", "--voxel", "3", "--closing", "4",
+                 "--min-gap", "2,2,1.5,0.7", "--vertices", "162", "--bem-fmm", "--fif", "-o", "model")
+        names = ("white_matter", "brain", *NAMES)
+        report = self.report()
+        self.assertEqual([s["name"] for s in report["surfaces"]], list(names))
+        self.assertEqual((report["options"]["layers"], report["options"]["minGreyMm"]), (5, 0.7))
+        for name, radius in zip(names, radii):
+            points, _ = read_tri(self.path("model") / f"{name}.tri")
+            self.assertLess(max(abs(math.dist(p, (0, 0, 0)) - radius) for p in points), 2)
+        for gap, inner, outer in zip(report["gaps"], radii, radii[1:]):
+            self.assertAlmostEqual(gap["mm"], outer - inner, delta=3)  # of flat triangles
+        index = (self.path("model") / "tissue_index.txt").read_text().splitlines()
+        self.assertEqual(index[1:], [
+            ">Skin : skin.stl : 0.465 : FreeSpace", ">Skull : bone.stl : 0.01 : Skin",
+            ">CSF : csf.stl : 1.654 : Skull", ">Gray : gm.stl : 0.275 : CSF",
+            ">White : wm.stl : 0.126 : Gray"])
+        for name in ("wm.stl", "headmodel.mat", "bem.fif", "white_matter.surf"):
+            self.assertTrue((self.path("model") / name).exists(), name)
+
+    def test_five_layers_are_refused_where_they_make_no_sense(self):
+        labels = self.labels()
+        self.fails(USAGE, r"--layers 5 needs --tissue white", *labels, "--tissue", "csf=4", "--layers", "5", "-o", "m")
+        self.fails(USAGE, r"--layers 5 needs --aseg or --white", "--t1", "seg.nii", "--layers", "5", "-o", "m")
+        self.fails(USAGE, r"five numbers and --layers 5 need each other", "--t1", "seg.nii", "--white", "lh.white",
+                   "--layers", "5", "--conductivity", "0.33,0.01,0.43", "-o", "m")
+
     def test_four_layers_are_refused_where_they_make_no_sense(self):
         labels = self.labels()
         self.fails(USAGE, r"--layers 4 needs --tissue csf", *labels, "--layers", "4", "-o", "m")
-        self.fails(USAGE, r"--layers 4 and --meg", *labels, "--layers", "4", "--meg", "-o", "m")
+        self.fails(USAGE, r"--layers 4 or 5 and --meg", *labels, "--layers", "4", "--meg", "-o", "m")
         self.fails(USAGE, r"--layers 4 does not go with --ct", "--ct", "seg.nii", "--layers", "4", "-o",
                    "m")
         self.fails(USAGE, r"--pial needs --t1", "--labels", "seg.nii", "--pial", "lh.pial",
@@ -508,7 +539,7 @@ class BadInput(BemTest):
             "--brain-mask needs --t1": ("--ct", "a.nii", "--brain-mask", "a.nii", "-o", "m"),
             "--labels needs --preset": ("--labels", "a.nii", "-o", "m"),
             "skull=... and scalp=": ("--labels", "a.nii", "--tissue", "brain=1", "-o", "m"),
-            "must be brain, csf, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
+            "must be white, brain, csf, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
             "labels with commas": ("--labels", "a.nii", "--tissue", "brain=1,x", "-o", "m"),
             "--preset needs --labels": ("--t1", "a.nii", "--preset", "charm", "-o", "m"),
             "--surfaces needs 3 files": ("--surfaces", "a.stl", "-o", "m"),
@@ -521,7 +552,7 @@ class BadInput(BemTest):
             "MIN:MAX": ("--t1", "a.nii", "-o", "m", "--edge-length", "9"),
             "0.5 mm or more": ("--t1", "a.nii", "-o", "m", "--min-gap", "0.4"),
             "one number, or 3": ("--t1", "a.nii", "-o", "m", "--vertices", "642,642"),
-            "one to three numbers": ("--t1", "a.nii", "-o", "m", "--min-gap", "1,2,3,4"),
+            "one to four numbers": ("--t1", "a.nii", "-o", "m", "--min-gap", "1,2,3,4,5"),
             "above 0 and at most 10": ("--t1", "a.nii", "-o", "m", "--conductivity", "0.3,0,0.3"),
             "--max-skull must be more": ("--t1", "a.nii", "-o", "m", "--max-skull", "1"),
             "--skull must lie between": ("--t1", "a.nii", "-o", "m", "--skull", "30"),

@@ -293,6 +293,14 @@ class FourLayers(InFolder):
                          [(4, 0.43), (3, 0.0041), (1, 0.33)])
         self.assertIn("brain of 162 vertices", repr(model))
 
+    def test_five_have_white_matter(self):
+        model = adaptiso.bem(labels=spheres((5, 1, 2, 3, 4), (44, 52, 60, 66, 72)), tissues={**FOUR, "white": [5]},
+                             affine=affine(), layers=5, **QUICK)
+        self.assertEqual(tuple(model.surfaces), adaptiso._bem.SURFACES)
+        self.assertEqual(model.report["options"]["conductivity"],
+                         {"white": 0.126, "brain": 0.275, "csf": 1.654, "skull": 0.01, "scalp": 0.465})
+        self.assertEqual([surface["sigma"] for surface in model.to_mne()], [0.465, 0.01, 0.275])
+
     @needs("nibabel")
     def test_bytes_are_the_program_s(self):
         import nibabel
@@ -368,26 +376,28 @@ class FourLayers(InFolder):
         t1, mask = phantom()
         distance = np.linalg.norm(np.stack(np.indices((44,) * 3), -1) * STEP - STEP * 21.5, axis=-1)
         pial = adaptiso.surface(np.asfortranarray(-distance), -48, affine=affine())
-        aseg = np.where(distance < 50, 3, np.where(mask == 1, 24, 0)).astype(np.uint8)  # 24: CSF
+        # 2 white matter, 3 cortex, 24 CSF
+        aseg = np.where(distance < 40, 2, np.where(distance < 50, 3, np.where(mask == 1, 24, 0))).astype(np.uint8)
         pial.save(self.folder / "lh.vtp")
         for name, samples in (("t1", t1), ("mask", mask), ("aseg", aseg)):
             nibabel.save(nibabel.Nifti1Image(np.asfortranarray(samples), affine()),
                          self.folder / f"{name}.nii")
-        for options, arguments, note in (
-                ({"brain_mask": mask, "pial": [pial]}, ["--brain-mask", "mask.nii", "--pial", "lh.vtp"],
+        for layers, options, arguments, note in (
+                (4, {"brain_mask": mask, "pial": [pial]}, ["--brain-mask", "mask.nii", "--pial", "lh.vtp"],
                  "brain surface: holds the pial surfaces"),
-                ({"aseg": aseg}, ["--aseg", "aseg.nii"], "brain surface: by the labels")):
-            model = adaptiso.bem(t1=t1, affine=affine(), layers=4, **options, **QUICK)
+                (5, {"aseg": aseg}, ["--aseg", "aseg.nii"], "brain surface: by the labels")):
+            model = adaptiso.bem(t1=t1, affine=affine(), layers=layers, **options, **QUICK)
             self.assertIn(note, model.report["notes"])
             model.save(self.folder / "ours", replace=True)
             paths = [self.folder / word if "." in word else word for word in arguments]
-            program("adaptiso-bem", "--t1", self.folder / "t1.nii", *paths, "--layers", 4, *ARGUMENTS,
+            program("adaptiso-bem", "--t1", self.folder / "t1.nii", *paths, "--layers", layers, *ARGUMENTS,
                     "-o", self.folder / "theirs", "--force")
-            for name in ("brain", *NAMES):
+            for name in adaptiso._bem.SURFACES[-layers:]:
                 self.assertEqual((self.folder / "ours" / f"{name}.tri").read_bytes(),
                                  (self.folder / "theirs" / f"{name}.tri").read_bytes(), name)
-        places = np.linalg.norm(model.surfaces["brain"].vertices, axis=1)
-        self.assertLess(abs(places.mean() - 50), 1)  # voxels of 4 mm
+        for name, radius in (("brain", 50), ("white_matter", 40)):
+            places = np.linalg.norm(model.surfaces[name].vertices, axis=1)
+            self.assertLess(abs(places.mean() - radius), 1)  # voxels of 4 mm
 
 
 class Electrodes(unittest.TestCase):

@@ -186,7 +186,7 @@ RawBoundaries rawBoundaries(const VolumeView& ct, const BoundaryOptions& options
 
 HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& options) {
     checkOptions(options);
-    if (options.withBrain) {
+    if (options.innerSurfaces > 0) {
         throw InvalidInput("a CT does not show where the brain ends and CSF begins");
     }
     if (!(options.skinHu < options.skullHu) || !(options.skinHu > kAirHu) ||

@@ -6,6 +6,7 @@
 
 #include "MatFile.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/HeadModel/ConductivityModel.h"
 
 namespace adaptiso {
 
@@ -15,25 +16,9 @@ namespace {
 
 constexpr const char* kModel = "headmodel";
 
-/// Tissue within a surface, by FieldTrip's names. Without a surface of its own the brain
-/// fills the inner skull.
-std::string tissueWithin(HeadSurface surface, std::size_t count) {
-    switch (surface) {
-        case HeadSurface::Brain:
-            return "brain";
-        case HeadSurface::InnerSkull:
-            return count == kHeadSurfaceCount ? "csf" : "brain";
-        case HeadSurface::OuterSkull:
-            return "skull";
-        case HeadSurface::OuterSkin:
-            return "scalp";
-    }
-    throw InternalError("tissueWithin: unknown head surface");
-}
-
 HeadSurface surfaceAround(const std::string& tissue, std::size_t count) {
     for (std::size_t n = 0; n < count; ++n) {
-        if (tissueWithin(headSurface(n, count), count) == tissue) return headSurface(n, count);
+        if (tissueWithin(headSurface(n, count), count).name == tissue) return headSurface(n, count);
     }
     throw FileError("it holds an unknown tissue");
 }
@@ -90,7 +75,7 @@ void writeFieldTripModel(std::span<const HeadLayer> layers, const std::filesyste
     std::vector<std::string> tissues;
     for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer) {
         conductivities.push_back(layer->conductivity);
-        tissues.push_back(tissueWithin(layer->surface, layers.size()));
+        tissues.emplace_back(tissueWithin(layer->surface, layers.size()).name);
     }
     std::vector<std::vector<MatVariable>> model;
     model.push_back(listOf(boundariesOf(layers, coordsys), matRow("cond", conductivities),

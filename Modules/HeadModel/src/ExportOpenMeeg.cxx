@@ -10,18 +10,16 @@
 namespace adaptiso {
 namespace {
 
-constexpr std::array<const char*, kHeadSurfaceCount> kInterfaces{"Cortex", "Inner", "Outer",
-                                                                 "Scalp"};
+constexpr std::array<const char*, kHeadSurfaceCount> kInterfaces{"WhiteMatter", "Cortex", "Inner",
+                                                                 "Outer", "Scalp"};
 
 const char* interfaceOf(std::size_t n, std::size_t count) {
     return kInterfaces[static_cast<std::size_t>(headSurface(n, count))];
 }
 
-/// Domain within surface n. Without a brain's surface the inner skull holds the brain.
-const char* domainOf(std::size_t n, std::size_t count) {
-    constexpr std::array<const char*, kHeadSurfaceCount> kFour{"Brain", "CSF", "Skull", "Skin"};
-    constexpr std::array<const char*, 3> kThree{"Brain", "Skull", "Skin"};
-    return count == kHeadSurfaceCount ? kFour[n] : kThree[n];
+/// Domain within surface n.
+std::string domainOf(std::size_t n, std::size_t count) {
+    return std::string(tissueWithin(headSurface(n, count), count).domain);
 }
 
 }  // namespace
@@ -37,7 +35,7 @@ std::string openMeegGeometry(std::span<const std::string> triangleFiles) {
     }
     geometry += "\nDomains " + std::to_string(count + 1) + "\n\n";
     for (std::size_t n = 0; n < count; ++n) {
-        geometry += std::string("Domain ") + domainOf(n, count) + ":";
+        geometry += "Domain " + domainOf(n, count) + ":";
         if (n > 0) geometry += std::string(" +") + interfaceOf(n - 1, count);
         geometry += std::string(" -") + interfaceOf(n, count) + "\n";
     }
@@ -48,7 +46,7 @@ std::string openMeegConductivities(std::size_t surfaces, const ConductivityModel
     checkConductivities(model);
     std::string lines = std::string(openmeeg::kConductivityHeader) + "\n\n";
     for (std::size_t n = 0; n < surfaces; ++n) {
-        lines += std::string(domainOf(n, surfaces)) + " " +
+        lines += domainOf(n, surfaces) + " " +
                  shortestText(model.within(headSurface(n, surfaces), surfaces)) + "\n";
     }
     return lines + "Air 0\n";

@@ -13,25 +13,18 @@
 namespace adaptiso {
 
 std::string_view toString(HeadSurface surface) {
-    switch (surface) {
-        case HeadSurface::Brain:
-            return "brain";
-        case HeadSurface::InnerSkull:
-            return "inner_skull";
-        case HeadSurface::OuterSkull:
-            return "outer_skull";
-        case HeadSurface::OuterSkin:
-            return "outer_skin";
-    }
-    throw InternalError("toString: unknown head surface");
+    constexpr std::array<std::string_view, kHeadSurfaceCount> kNames{
+        "white_matter", "brain", "inner_skull", "outer_skull", "outer_skin"};
+    return kNames.at(static_cast<std::size_t>(surface));
 }
 
 HeadSurface headSurface(std::size_t n, std::size_t count) {
-    const bool isKnown = (count == 1 || count == 3 || count == kHeadSurfaceCount) && n < count;
+    const bool isKnown = (count == 1 || (count >= 3 && count <= kHeadSurfaceCount)) && n < count;
     if (!isKnown) {
-        throw InvalidInput("a head model has 1, 3 or 4 surfaces, not " + std::to_string(count));
+        throw InvalidInput("a head model has 1, 3, 4 or 5 surfaces, not " + std::to_string(count));
     }
-    return static_cast<HeadSurface>(count == kHeadSurfaceCount ? n : n + 1);
+    return count == 1 ? HeadSurface::InnerSkull
+                      : static_cast<HeadSurface>(kHeadSurfaceCount - count + n);
 }
 
 }  // namespace adaptiso
@@ -188,11 +181,13 @@ void checkOptions(const BoundaryOptions& options) {
     requireUpTo("minScalpMm", options.minScalpMm, 20);
     requireUpTo("csfMm", options.csfMm, 20);
     requireUpTo("minCsfMm", options.minCsfMm, 20);
+    requireUpTo("minGreyMm", options.minGreyMm, 20);
     requireUpTo("sulciMm", options.sulciMm, 30);
     if (!(options.ageYears >= 0 && options.ageYears <= 120)) {
         throw InvalidInput("ageYears is " + shortNumber(options.ageYears) + ", must be 0 to 120");
     }
-    if (options.withBrain && options.innerSkullOnly) {
+    if (options.innerSurfaces > 2) throw InvalidInput("innerSurfaces must be 0, 1 or 2");
+    if (options.innerSurfaces > 0 && options.innerSkullOnly) {
         throw InvalidInput("one surface and four were asked for");
     }
     requireUpTo("cutNecksMm", options.cutNecksMm, 20);
@@ -202,7 +197,6 @@ void checkOptions(const BoundaryOptions& options) {
 
 HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
     const double step = stepMm(raw.grid);
-    const std::array<double, 2> gaps{options.minSkullMm, options.minScalpMm};
     HeadBoundaries result;
     result.notes = std::move(raw.notes);
     result.seenMm = std::move(raw.seenMm);
@@ -215,27 +209,29 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
                                    options.smoothingMm, nameOf(surface), result.notes);
         return solid;
     };
-    Mask within, innerSkull;
+    Mask within, around;
     for (std::size_t n = 0; n < raw.parts.size(); ++n) {
         tell(options, "smooth", static_cast<double>(n) / static_cast<double>(raw.parts.size()));
         std::vector<float> part = std::move(raw.parts[n]);
         if (n > 0) {
             // smoothing takes a little off the wall's outside, and distances are of voxels
-            const double offset = gaps[n - 1] + step / 2;
+            const double offset = options.minGapMm(headSurface(n - 1, raw.parts.size())) + step / 2;
             growTo(part, depthMm(within, raw.grid, {step, offset + step}), offset, step);
         }
         BoxedSolid solid = settle(std::move(part), headSurface(n, raw.parts.size()));
         within = insideOf(solid, raw.grid.size);
-        if (n == 0 && !raw.brain.empty()) innerSkull = within;
+        if (n == 0 && !raw.inner.empty()) around = within;
         result.solids.push_back(std::move(solid.field));
     }
-    if (!raw.brain.empty()) {
+    for (std::size_t n = 0; n < raw.inner.size(); ++n) {
+        const HeadSurface surface = n == 0 ? HeadSurface::Brain : HeadSurface::WhiteMatter;
         // distances are of voxels
-        keepWithin(raw.brain, innerSkull, raw.grid, options.minCsfMm + step / 2);
-        result.solids.insert(result.solids.begin(),
-                             settle(std::move(raw.brain), HeadSurface::Brain).field);
+        keepWithin(raw.inner[n], around, raw.grid, options.minGapMm(surface) + step / 2);
+        BoxedSolid solid = settle(std::move(raw.inner[n]), surface);
+        if (n + 1 < raw.inner.size()) around = insideOf(solid, raw.grid.size);
+        result.solids.insert(result.solids.begin(), std::move(solid.field));
         if (!result.seenMm.empty()) {
-            result.seenMm.insert(result.seenMm.begin(), std::move(raw.brainSeenMm));
+            result.seenMm.insert(result.seenMm.begin(), std::move(raw.innerSeenMm[n]));
         }
     }
     return result;

@@ -20,8 +20,9 @@ struct RawBoundaries {
     ImageGeometry grid;
     std::vector<std::vector<float>> parts;
     std::vector<std::vector<Vec3>> seenMm{};  ///< of the parts, as HeadBoundaries has it
-    std::vector<Vec3> brainSeenMm{};
-    std::vector<float> brain{};  ///< within the first of them; empty: not wanted
+    /// Those wanted within the first of them, from outside in: brain, white matter.
+    std::vector<std::vector<float>> inner{};
+    std::vector<std::vector<Vec3>> innerSeenMm{};
     std::vector<std::string> notes;
     std::vector<Warning> warnings;
     std::vector<Finding> doubts{};
@@ -38,7 +39,8 @@ std::vector<Vec3> sidesOf(const Mask& mask, const ImageGeometry& grid,
                           const std::vector<std::uint8_t>& faces);
 
 /// Smooths each solid, grows it to hold the one inside it with the least gap, and makes it a ball,
-/// from inside out; a brain gives way to the CSF before. Every change of topology is noted with its
+/// from inside out; then brain and white
+/// matter give way to the layer around them. Every change of topology is noted with its
 /// size. \throws InvalidInput  a solid is empty, or reaches the grid's border
 HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options);
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "BrainSurface.h"
 #include "FinishBoundaries.h"
 #include "Necks.h"
 #include "WorkingGrid.h"
@@ -90,8 +91,8 @@ SegmentedHead segmentedHead(const std::vector<FloatImage>& enclosed) {
 }
 
 /// \param enclosed  by inner skull, outer skull and skin
-/// \param brain     by the brain's own surface, if that is wanted
-HeadBoundaries boundariesFrom(std::vector<FloatImage> enclosed, std::optional<FloatImage> brain,
+/// \param inner     by the surfaces wanted within these, from outside in: brain, white matter
+HeadBoundaries boundariesFrom(std::vector<FloatImage> enclosed, std::vector<FloatImage> inner,
                               BoundaryOptions options) {
     const ImageGeometry image = enclosed.front().geometry;
     Index3 first, last;
@@ -116,12 +117,15 @@ HeadBoundaries boundariesFrom(std::vector<FloatImage> enclosed, std::optional<Fl
             largestComponent(above(resampled(one, raw.grid, 0), kFractionIsovalue), raw.grid.size),
             raw.grid, faces));
     }
-    if (brain) {
-        raw.brainSeenMm =
-            sidesOf(above(resampled(*brain, raw.grid, 0), kFractionIsovalue), raw.grid, faces);
-        raw.brain = solidOf(resampled(*brain, raw.grid, 0), raw.grid, faces, options.sulciMm);
-        brain.reset();
+    for (const FloatImage& one : inner) {
+        std::vector<float> part = resampled(one, raw.grid, 0);
+        raw.innerSeenMm.push_back(sidesOf(above(part, kFractionIsovalue), raw.grid, faces));
+        raw.inner.push_back(
+            raw.inner.empty()
+                ? solidOf(std::move(part), raw.grid, faces, options.sulciMm)
+                : whiteSolid(std::move(part), raw.grid, faces, options.sulciMm, raw.notes));
     }
+    freeMemory(inner);
     requireOrder(enclosed, raw);
     freeMemory(enclosed);  // what follows takes memory of its own
     cutNecks(raw, options);
@@ -134,7 +138,8 @@ HeadBoundaries boundariesFrom(std::vector<FloatImage> enclosed, std::optional<Fl
 
 void requireDistinct(const TissueLabels& tissues) {
     std::set<std::int64_t> seen;
-    for (const auto* list : {&tissues.brain, &tissues.csf, &tissues.skull, &tissues.scalp}) {
+    for (const auto* list :
+         {&tissues.white, &tissues.brain, &tissues.csf, &tissues.skull, &tissues.scalp}) {
         for (const std::int64_t label : *list) {
             if (!seen.insert(label).second) {
                 throw InvalidInput("label " + std::to_string(label) + " is named twice");
@@ -150,17 +155,37 @@ void requireSome(const FloatImage& more, const FloatImage* less, const char* tis
     throw InvalidInput(std::string("the image holds no label of the tissue ") + tissue);
 }
 
+/// FreeSurfer's colour table: white matter of cerebrum and cerebellum, brain stem, ventral DC,
+/// corpus callosum, fornix, hypointensities, those of wmparc; deep grey matter and ventricles,
+/// which lie within it. Hippocampus and amygdala are grey.
+std::vector<std::int64_t> freeSurferWhite() {
+    std::vector<std::int64_t> labels{2,   41,  7,   46,  16,  28,  60,   77,   78, 79, 192,
+                                     250, 251, 252, 253, 254, 255, 5001, 5002,          // white
+                                     10,  49,  11,  50,  12,  51,  13,   52,   26, 58,  // deep grey
+                                     4,   43,  5,   44,  14,  15,  31,   63,   72};  // ventricles
+    for (std::int64_t label = 3000; label < 5000; ++label) labels.push_back(label);
+    return labels;
+}
+
 const std::vector<std::pair<std::string, TissueLabels>>& presets() {
+    // 165 Skull, 258 Head-ExtraCerebral, 259 Eye-Fluid; 24 CSF, 257 CSF-ExtraCerebral
+    static const TissueLabels kFreeSurfer{{},   {165},     {258, 259},
+                                          true, {24, 257}, freeSurferWhite()};
     static const std::vector<std::pair<std::string, TissueLabels>> kPresets{
         // SimNIBS 4: 1 white, 2 grey, 3 CSF, 4 bone, 5 scalp, 6 eyes, 7 compact and 8 spongy bone,
         // 9 blood, 10 muscle
-        {"charm", {{1, 2}, {4, 7, 8}, {5, 6, 10}, false, {3, 9}}},
+        {"charm", {{2}, {4, 7, 8}, {5, 6, 10}, false, {3, 9}, {1}}},
         // SimNIBS 3: the first six alone
-        {"headreco", {{1, 2}, {4}, {5, 6}, false, {3}}},
-        // FreeSurfer's colour table: 165 Skull, 258 Head-ExtraCerebral, 259 Eye-Fluid; 24 CSF, 257
-        // CSF-ExtraCerebral
-        {"aseg", {{}, {165}, {258, 259}, true, {24, 257}}},
-        {"samseg", {{}, {165}, {258, 259}, true, {24, 257}}},
+        {"headreco", {{2}, {4}, {5, 6}, false, {3}, {1}}},
+        // GRACE: 1 white, 2 grey, 3 eyes, 4 CSF, 5 air, 6 blood, 7 cancellous and 8 cortical bone,
+        // 9
+        // skin, 10 fat, 11 muscle. Blood is that of vessels in the skull and outside of it; air
+        // that
+        // of sinuses: neither has a side
+        {"grace", {{2}, {7, 8}, {3, 9, 10, 11}, false, {4}, {1}}},
+        {"aseg", kFreeSurfer},
+        {"samseg", kFreeSurfer},
+        {"synthseg", kFreeSurfer},
         // class_map["total"] of TotalSegmentator 2
         {"totalsegmentator", {{90}, {91}, {}, false, {}}},
     };
@@ -192,7 +217,7 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
                           "the head mask is on another grid than the labels");
     }
     const auto isBrain = [&](double sample) {
-        if (holds(tissues.brain, sample)) return true;
+        if (holds(tissues.brain, sample) || holds(tissues.white, sample)) return true;
         return tissues.othersAreBrain && sample != 0 && !std::isnan(sample) &&
                !holds(tissues.csf, sample) && !holds(tissues.skull, sample) &&
                !holds(tissues.scalp, sample);
@@ -203,13 +228,18 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
     const auto isInSkull = [&](double sample) {
         return isInCavity(sample) || holds(tissues.skull, sample);
     };
-    std::optional<FloatImage> brain;
-    std::vector<FloatImage> enclosed{indicator(labels, isInCavity)};
+    std::vector<FloatImage> inner, enclosed{indicator(labels, isInCavity)};
     requireSome(enclosed[0], nullptr, "brain");
-    if (options.withBrain) {
-        brain = indicator(labels, isBrain);
-        requireSome(*brain, nullptr, "brain");
-        requireSome(enclosed[0], &*brain, "CSF");
+    if (options.innerSurfaces > 0) {
+        inner.push_back(indicator(labels, isBrain));
+        requireSome(inner[0], nullptr, "brain");
+        requireSome(enclosed[0], inner.data(), "CSF");
+    }
+    if (options.innerSurfaces > 1) {
+        inner.push_back(
+            indicator(labels, [&](double sample) { return holds(tissues.white, sample); }));
+        requireSome(inner[1], nullptr, "white matter");
+        requireSome(inner[0], &inner[1], "brain besides white matter");
     }
     if (!options.innerSkullOnly) {
         enclosed.push_back(indicator(labels, isInSkull));
@@ -220,7 +250,7 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
         if (headMask) unite(enclosed[2], *headMask);
         requireSome(enclosed[2], &enclosed[1], "scalp");
     }
-    return boundariesFrom(std::move(enclosed), std::move(brain), options);
+    return boundariesFrom(std::move(enclosed), std::move(inner), options);
 }
 
 HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
@@ -242,27 +272,25 @@ HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
         }
         full = std::max(full, valueRange(maps[n]).maximum);
     }
-    std::vector<FloatImage> enclosed;
-    std::optional<FloatImage> brain;
+    std::vector<FloatImage> enclosed, inner;
+    const auto scaled = [&](FloatImage image) {
+        for (float& value : image.values) {
+            value = std::clamp(value / static_cast<float>(full), 0.0f, 1.0f);
+        }
+        return image;
+    };
     FloatImage sum = toFloat(maps[0], 0);
     for (std::size_t n = 0; n < needed; ++n) {
         if (n > 0) {
             const FloatImage more = toFloat(maps[n], 0);
             for (std::size_t v = 0; v < sum.values.size(); ++v) sum.values[v] += more.values[v];
         }
-        const bool isWholeBrain = n + 1 == kTissueMaps && options.withBrain;
-        if (n + 1 < kBrainMaps && !isWholeBrain) continue;
-        FloatImage scaled = sum;
-        for (float& value : scaled.values) {
-            value = std::clamp(value / static_cast<float>(full), 0.0f, 1.0f);
-        }
-        if (isWholeBrain) {
-            brain = std::move(scaled);
-        } else {
-            enclosed.push_back(std::move(scaled));
-        }
+        const bool isWholeBrain = n + 1 == kTissueMaps && options.innerSurfaces > 0;
+        if (isWholeBrain) inner.push_back(scaled(sum));
+        if (isWholeBrain && options.innerSurfaces > 1) inner.push_back(scaled(toFloat(maps[n], 0)));
+        if (n + 1 >= kBrainMaps) enclosed.push_back(scaled(sum));
     }
-    return boundariesFrom(std::move(enclosed), std::move(brain), options);
+    return boundariesFrom(std::move(enclosed), std::move(inner), options);
 }
 
 }  // namespace adaptiso

@@ -48,7 +48,9 @@ double gapOf(const NestOptions& options, std::size_t n) {
 }
 
 /// Faults that no movement can mend: surfaces that cross themselves, or in a wrong order.
-std::vector<Finding> findHopeless(const std::vector<TriangleMesh>& surfaces) {
+/// \param nesting  gets the report of each pair
+std::vector<Finding> findHopeless(const std::vector<TriangleMesh>& surfaces,
+                                  std::vector<NestingReport>& nesting) {
     std::vector<Finding> findings;
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
         const TriangleMesh& surface = surfaces[n];
@@ -59,7 +61,7 @@ std::vector<Finding> findHopeless(const std::vector<TriangleMesh>& surfaces) {
                                 surface.points[surface.triangles[first][0]]});
         }
         if (n + 1 == surfaces.size()) break;
-        const NestingReport report = checkNesting(surface, surfaces[n + 1]);
+        const NestingReport& report = nesting.emplace_back(checkNesting(surface, surfaces[n + 1]));
         if (report.relation == NestingRelation::Swapped ||
             report.relation == NestingRelation::Apart) {
             findings.push_back({"surfaces " + std::to_string(n) + " and " + std::to_string(n + 1) +
@@ -88,10 +90,12 @@ SurfaceMove measureMove(const TriangleMesh& before, const TriangleMesh& after) {
 }
 
 /// Checks the promised gaps and nesting by code other than that which made them.
-void verify(const NestOptions& options, NestResult& result) {
+/// \param nesting  the report of each pair as it is now
+void verify(const NestOptions& options, const std::vector<NestingReport>& nesting,
+            NestResult& result) {
     for (std::size_t n = 0; n + 1 < result.surfaces.size(); ++n) {
         const double wanted = gapOf(options, n);
-        const NestingReport report = checkNesting(result.surfaces[n], result.surfaces[n + 1]);
+        const NestingReport& report = nesting[n];
         const auto& [mm, inner, outer] = report.gap.nearest;
         result.gaps.push_back({mm, inner, outer});
         if (!report.isStrictlyNested() || !(mm >= wanted)) {
@@ -109,24 +113,31 @@ void verify(const NestOptions& options, NestResult& result) {
 NestResult nestSurfaces(const std::vector<TriangleMesh>& surfaces, const NestOptions& options) {
     checkInput(surfaces, options);
     NestResult result;
-    result.findings = findHopeless(surfaces);
+    std::vector<NestingReport> nesting;
+    result.findings = findHopeless(surfaces, nesting);
     result.surfaces = surfaces;
+    bool hasFixedMoved = false;
     const auto push = [&](std::size_t moving, std::size_t fixed) {
         if (!result.findings.empty()) return;
         const std::size_t inner = std::min(moving, fixed);
         const double gap = gapOf(options, inner);
-        const NestingReport report =
-            checkNesting(result.surfaces[inner], result.surfaces[inner + 1]);
+        NestingReport& report = nesting[inner];
+        const auto check = [&] {
+            report = checkNesting(result.surfaces[inner], result.surfaces[inner + 1]);
+        };
+        if (hasFixedMoved && fixed != options.fixedSurface) check();
+        hasFixedMoved = false;  // the one that moves is the next one's fixed one
         if (report.isStrictlyNested() && report.gap.nearest.distanceMm >= gap) return;
+        hasFixedMoved = true;
         auto finding = pushApart(result.surfaces[moving], result.surfaces[fixed],
                                  {gap, options.maxMoveMm, moving > fixed});
-        if (!finding) return;
+        if (!finding) return check();
         finding->what = "surface " + std::to_string(moving) + ": " + finding->what;
         result.findings.push_back(*finding);
     };
     for (std::size_t n = options.fixedSurface + 1; n < surfaces.size(); ++n) push(n, n - 1);
     for (std::size_t n = options.fixedSurface; n > 0; --n) push(n - 1, n);
-    if (result.findings.empty()) verify(options, result);
+    if (result.findings.empty()) verify(options, nesting, result);
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
         result.moves.push_back(measureMove(surfaces[n], result.surfaces[n]));
         if (result.moves.back().movedVertices > 0) result.surfaces[n].normals.clear();

@@ -177,7 +177,7 @@ public:
         : surfaces_(surfaces),
           options_(options),
           usual_(options.usual),
-          innerSkull_(options.areHeadLayers && surfaces.size() == kHeadSurfaceCount ? 1 : 0) {}
+          innerSkull_(options.areHeadLayers && surfaces.size() > 3 ? surfaces.size() - 3 : 0) {}
 
     std::vector<HeadNote> judged() && {
         for (std::size_t n = 0; n < surfaces_.size(); ++n) {

@@ -119,6 +119,14 @@ void reachVertexCount(Remesher& remesher, std::int64_t vertices) {
     }
 }
 
+/// As many rounds up to 20,000 vertices, then fewer, a fifth of them at least: each takes time by
+/// the vertices, and irregular ones matter less the shorter edges are.
+int roundsFor(int rounds, std::int64_t vertices) {
+    constexpr std::int64_t kMany = 20'000;
+    if (vertices <= kMany) return rounds;
+    return std::max(rounds / 5, static_cast<int>(rounds * kMany / vertices));
+}
+
 /// Puts vertices where edges are longest and takes as many where they are shortest, ever fewer of
 /// them: this heals vertices of valence 5 and 7 that relaxing alone leaves as they are.
 void evenOut(Remesher& remesher, int rounds) {
@@ -137,7 +145,8 @@ void evenOut(Remesher& remesher, int rounds) {
 
 void settleShapes(Remesher& remesher) {
     constexpr int kRounds = 15;
-    for (int round = 0; round < kRounds; ++round) {
+    const int rounds = roundsFor(kRounds, remesher.vertexCount());
+    for (int round = 0; round < rounds; ++round) {
         remesher.flipToDelaunay();
         remesher.relax(2);
     }
@@ -225,7 +234,7 @@ std::int64_t startOver(Remesher& remesher, std::int64_t vertices, int rounds, bo
 TriangleMesh finish(Remesher& remesher, std::int64_t vertices, double fitMm) {
     constexpr int kEvenRounds = 20;
     reachVertexCount(remesher, vertices);
-    evenOut(remesher, kEvenRounds);
+    evenOut(remesher, roundsFor(kEvenRounds, vertices));
     reachVertexCount(remesher, vertices);
     settleShapes(remesher);
     if (fitMm > 0) remesher.fitVertices(fitMm);

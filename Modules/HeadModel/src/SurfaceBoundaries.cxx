@@ -86,9 +86,7 @@ std::vector<float> headmodel::surfacePart(const TriangleMesh& surface, const Ima
 HeadBoundaries boundariesFromSurfaces(std::span<const TriangleMesh> surfaces,
                                       const BoundaryOptions& options) {
     checkOptions(options);
-    const std::size_t wanted = options.innerSkullOnly ? 1
-                               : options.withBrain    ? kHeadSurfaceCount
-                                                      : 3;
+    const std::size_t wanted = options.surfaceCount();
     if (surfaces.size() != wanted) {
         throw InvalidInput("there are " + std::to_string(surfaces.size()) + " surfaces, must be " +
                            std::to_string(wanted));
@@ -96,16 +94,13 @@ HeadBoundaries boundariesFromSurfaces(std::span<const TriangleMesh> surfaces,
     RawBoundaries raw;
     raw.grid =
         gridAround(surfaces, options.stepMm > 0 ? options.stepMm : kUsualStepMm, marginMm(options));
-    for (const TriangleMesh& surface : surfaces) {
-        tell(options, "mend", static_cast<double>(raw.parts.size()) / static_cast<double>(wanted));
-        const bool isBrain = options.withBrain && &surface == surfaces.data();
+    for (std::size_t n = 0; n < wanted; ++n) {
+        tell(options, "mend", static_cast<double>(n) / static_cast<double>(wanted));
+        const bool isInner = n < options.innerSurfaces;
         std::vector<float> part =
-            surfacePart(surface, raw.grid, isBrain ? options.sulciMm : options.closingMm);
-        if (isBrain) {
-            raw.brain = std::move(part);
-        } else {
-            raw.parts.push_back(std::move(part));
-        }
+            surfacePart(surfaces[n], raw.grid, isInner ? options.sulciMm : options.closingMm);
+        auto& parts = isInner ? raw.inner : raw.parts;
+        parts.insert(isInner ? parts.begin() : parts.end(), std::move(part));
     }
     return finished(std::move(raw), options);
 }

@@ -175,7 +175,8 @@ Mask brainOf(const BrainSources& sources, const Head& head, Mask guess, RawBound
         requirePlausibleMask(brain, head, BoundarySource::Lesion);
     }
     if (!sources.pial.empty()) {
-        const Mask pial = above(pialPart(sources.pial, head.grid), kFractionIsovalue);
+        const Mask pial =
+            above(cortexPart(sources.pial, BoundarySource::Pial, head.grid), kFractionIsovalue);
         for (std::size_t n = 0; n < brain.size(); ++n) brain[n] |= pial[n];
     }
     const std::string cm3 = shortNumber(cm3Of(brain, head.grid)) + " cm3";
@@ -351,7 +352,7 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
                             "there");
     }
     if (head.isFluidBright) {
-        if (options.withBrain && !sources.aseg && sources.pial.empty()) {
+        if (options.innerSurfaces > 0 && !sources.aseg && sources.pial.empty()) {
             throw InvalidInput(
                 "CSF is brighter than brain (a T2-weighted image): it does not show where the "
                 "brain ends by itself; give --aseg or --pial, or a T1");
@@ -367,9 +368,14 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
     raw.parts.push_back(innerSkullPart(brain, head, isGuess, options, raw.notes));
     if (isGuess && !head.isFluidBright) warnOfContrast(raw.parts[0], head, raw.warnings);
     cutNecks(raw, options);
-    if (options.withBrain) {
-        raw.brain = brainSurfacePart(sources, {head.grid, head.t1, head.faces, head.levels, brain},
-                                     options, raw.notes, raw.brainSeenMm);
+    if (options.innerSurfaces > 0) {
+        raw.inner.push_back(brainSurfacePart(sources,
+                                             {head.grid, head.t1, head.faces, head.levels, brain},
+                                             options, raw.notes, raw.innerSeenMm.emplace_back()));
+    }
+    if (options.innerSurfaces > 1) {
+        raw.inner.push_back(whiteMatterPart(sources, head.grid, head.faces, options, raw.notes,
+                                            raw.innerSeenMm.emplace_back()));
     }
     freeMemory(brain);
     tell(options, "skull", 0);
@@ -404,7 +410,7 @@ bool isInfant(const VolumeView& t1, const BrainSources& sources, BoundaryOptions
     constexpr double kYears = 0.25, kMostCm3 = 1550;  // of 2 years
     options.ageYears = kYears;
     options.innerSkullOnly = true;
-    options.withBrain = false;
+    options.innerSurfaces = 0;
     try {
         const HeadBoundaries found = foundInT1(t1, sources, options);
         const FractionField& solid = found.solids.front();

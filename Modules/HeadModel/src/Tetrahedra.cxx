@@ -1,32 +1,12 @@
 #include "adaptiso/HeadModel/Tetrahedra.h"
 
-#include <array>
+#include <algorithm>
 #include <numeric>
 #include <string>
 
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
-
-std::int32_t tissueNumber(HeadSurface surface, std::size_t count) {
-    constexpr std::int32_t kBrain = 2, kCsf = 3, kSkull = 4, kScalp = 5;
-    switch (surface) {
-        case HeadSurface::Brain:
-            return kBrain;
-        case HeadSurface::InnerSkull:
-            return count == kHeadSurfaceCount ? kCsf : kBrain;
-        case HeadSurface::OuterSkull:
-            return kSkull;
-        case HeadSurface::OuterSkin:
-            return kScalp;
-    }
-    throw InternalError("tissueNumber: unknown head surface");
-}
-
-std::string_view tissueName(std::int32_t number) {
-    constexpr std::array<std::string_view, 4> kNames{"brain", "csf", "skull", "scalp"};
-    return number >= 2 && number <= 5 ? kNames[static_cast<std::size_t>(number - 2)] : "unknown";
-}
 
 MesherInput headMesherInput(std::span<const TriangleMesh> surfaces) {
     MesherInput input;
@@ -58,9 +38,9 @@ std::vector<TetrahedraRegion> headRegions(std::span<const TriangleMesh> surfaces
     std::vector<TetrahedraRegion> regions;
     double within = 0, inner = 0;
     for (std::size_t n = 0; n < surfaces.size(); ++n) {
-        const std::int32_t tissue = tissueNumber(headSurface(n, surfaces.size()), surfaces.size());
+        const HeadTissue& tissue = tissueWithin(headSurface(n, surfaces.size()), surfaces.size());
         const double mm3 = enclosedVolume(surfaces[n]);
-        regions.push_back({tissue, std::string(tissueName(tissue)), mm3 - within,
+        regions.push_back({tissue.number, std::string(tissue.name), mm3 - within,
                            inner + surfaceArea(surfaces[n])});
         within = mm3;
         inner = surfaceArea(surfaces[n]);
@@ -68,21 +48,20 @@ std::vector<TetrahedraRegion> headRegions(std::span<const TriangleMesh> surfaces
     return regions;
 }
 
-std::vector<TetrahedraRegion> allTissues() {
+std::vector<TetrahedraRegion> allTissues(std::size_t count) {
+    const std::size_t all = std::max<std::size_t>(count, 4);
     std::vector<TetrahedraRegion> regions;
-    for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
-        const std::int32_t tissue =
-            tissueNumber(headSurface(n, kHeadSurfaceCount), kHeadSurfaceCount);
-        regions.push_back({tissue, std::string(tissueName(tissue)), 0, 0});
+    for (std::size_t n = 0; n < all; ++n) {
+        const HeadTissue& tissue = tissueWithin(headSurface(n, all), all);
+        regions.push_back({tissue.number, std::string(tissue.name), 0, 0});
     }
     return regions;
 }
 
-std::vector<double> tissueConductivities(const ConductivityModel& model) {
+std::vector<double> tissueConductivities(const ConductivityModel& model, std::size_t count) {
+    const std::size_t all = std::max<std::size_t>(count, 4);
     std::vector<double> values;
-    for (std::size_t n = 0; n < kHeadSurfaceCount; ++n) {
-        values.push_back(model.within(headSurface(n, kHeadSurfaceCount), kHeadSurfaceCount));
-    }
+    for (std::size_t n = 0; n < all; ++n) values.push_back(model.within(headSurface(n, all), all));
     return values;
 }
 

@@ -124,7 +124,7 @@ AffineTransform toLps(CoordinateFrame frame, const BemModel& model) {
 }
 
 void guess(BemModel& model, BemElectrodes& placed) {
-    const std::size_t innerSkull = model.options.boundaries.withBrain ? 1 : 0;
+    const std::size_t innerSkull = model.options.boundaries.innerSurfaces;
     const GuessedLandmarks guessed = guessLandmarks(model.meshes[innerSkull], model.meshes.back());
     placed.landmarks = guessed.landmarks;
     if (!placed.landmarks) {
@@ -284,7 +284,7 @@ void place(BemModel& model, BemElectrodes& placed) {
     const bool needsLandmarks = options.positions || options.wantsLandmarks;
     if (!placed.landmarks && needsLandmarks) guess(model, placed);
     if (placed.landmarks) {
-        const std::size_t innerSkull = model.options.boundaries.withBrain ? 1 : 0;
+        const std::size_t innerSkull = model.options.boundaries.innerSurfaces;
         requireAbove(*placed.landmarks, model.meshes[innerSkull].points,
                      "the inner skull's vertices");
         if (auto warning = doubtfulSides(*placed.landmarks)) {

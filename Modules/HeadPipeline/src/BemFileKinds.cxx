@@ -86,7 +86,8 @@ BemFileFault checkSurfaces(const Source& source, const StoredSurfaces& held,
     if (!(farthest <= kFileRoundingMm)) {
         return source.fault("a vertex lies " + formatNumber(farthest) + " mm from where it should");
     }
-    if (!held.keepsPromises) return std::nullopt;
+    // to the bit as checkModel() found them, in its frame
+    if (!held.keepsPromises || (farthest == 0 && held.unitMm == 1)) return std::nullopt;
     for (const ModelCheck& each : checkHeadSurfaces(inMm, held.gapsMm).checks) {
         if (!each.check.breaksProfile()) continue;
         return Finding{each.subject + ": " + std::string(each.check.name) + ": " +
@@ -225,16 +226,16 @@ std::vector<TriangleMesh> readFiffMeshes(const fs::path& path) {
     return stored;
 }
 
-/// Outermost first, as MNE writes them. MNE has no number for a brain within CSF: it gets the rest,
-/// with the brain's conductivity within the inner skull.
+/// Outermost first, as MNE writes them. MNE has no number for a brain within CSF: it gets the outer
+/// three, with the brain's conductivity within the inner skull.
 BemFileKind fiffModel(const Source& source, const Files& files) {
     const AffineTransform move = source.into(source.mriFrame());
     StoredSurfaces held = wholeModel(source, move, kMetreMm);
-    const std::size_t first = source.model.options.boundaries.withBrain ? 1 : 0;
-    if (first > 0) {
-        held.meshes.erase(held.meshes.begin());
-        held.gapsMm.erase(held.gapsMm.begin());
-    }
+    const std::size_t first = source.model.options.boundaries.innerSurfaces;
+    held.meshes.erase(held.meshes.begin(),
+                      held.meshes.begin() + static_cast<std::ptrdiff_t>(first));
+    held.gapsMm.erase(held.gapsMm.begin(),
+                      held.gapsMm.begin() + static_cast<std::ptrdiff_t>(first));
     return allInOne(
         source, files, held,
         [source, first, move](const fs::path& path) {
@@ -323,16 +324,14 @@ std::vector<BemFileRow> allRows() {
          }},
         {"headmodel.mat",
          {"headmodel.mat"},
-         [](const Source& s) { return s.options.writesFieldTrip; },
+         [](const Source& s) { return s.options.writesFieldTrip || s.options.writesBemFmm; },
          fieldTripFile},
         {"tess_*_bem.mat",
-         {"tess_brain_bem.mat", "tess_innerskull_bem.mat", "tess_outerskull_bem.mat",
-          "tess_head_bem.mat"},
+         {"tess_white_bem.mat", "tess_brain_bem.mat", "tess_innerskull_bem.mat",
+          "tess_outerskull_bem.mat", "tess_head_bem.mat"},
          [](const Source& s) { return s.options.writesBrainstorm; },
          brainstormFiles},
-        {"*.stl",
-         {"gm.stl", "csf.stl", "bone.stl", "skin.stl"},
-         [](const Source& s) { return s.options.writesSimNibs; },
+        {"*.stl", stlFileNames(), [](const Source& s) { return s.options.writesStl(); },
          simNibsFiles}};
     for (BemFileRow& row : pointFileRows()) rows.push_back(std::move(row));
     rows.push_back({"model.geom, model.cond",
@@ -344,6 +343,10 @@ std::vector<BemFileRow> allRows() {
 }
 
 }  // namespace
+
+std::vector<std::string> stlFileNames() {
+    return {"wm.stl", "gm.stl", "csf.stl", "bone.stl", "skin.stl"};
+}
 
 const std::vector<BemFileRow>& bemFileRows() {
     static const std::vector<BemFileRow> rows = allRows();

@@ -65,7 +65,10 @@ struct BemFileRow {
 /// room. An error of frame or unit is larger by far.
 inline constexpr double kFileRoundingMm = 1e-3;
 
-/// Rows of electrodes, sources and tetrahedra.
+/// By HeadSurface, as SimNIBS 3 names them.
+std::vector<std::string> stlFileNames();
+
+/// Rows of electrodes, sources, tetrahedra and texts.
 std::vector<BemFileRow> pointFileRows();
 
 /// All rows, in the order in which files are written and checked.

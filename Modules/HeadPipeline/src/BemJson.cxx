@@ -153,10 +153,10 @@ Json tetrahedraJson(const BemModel& model) {
     const TetrahedraReport& report = model.tetrahedra->report;
     Json layers = Json::array();
     for (std::size_t n = 0; n < report.counts.size(); ++n) {
-        const std::int32_t tissue =
-            tissueNumber(headSurface(n, report.counts.size()), report.counts.size());
-        layers.push_back({{"tissue", tissueName(tissue)},
-                          {"number", tissue},
+        const HeadTissue& tissue =
+            tissueWithin(headSurface(n, report.counts.size()), report.counts.size());
+        layers.push_back({{"tissue", tissue.name},
+                          {"number", tissue.number},
                           {"tetrahedra", report.counts[n]},
                           {"volumeMm3", number(report.volumesMm3[n])},
                           {"betweenSurfacesMm3", number(report.expectedMm3[n])}});
@@ -203,14 +203,17 @@ Json bemOptionsJson(const BemModelOptions& options) {
               {"vertices", options.vertices.empty() ? Json(nullptr) : Json(options.vertices)},
               {"edgeLengthMm", edges},
               {"minGapMm", {b.minSkullMm, b.minScalpMm}},
-              {"minCsfMm", b.minCsfMm}};
+              {"minCsfMm", b.minCsfMm},
+              {"minGreyMm", b.minGreyMm}};
     json.update(valuesJson(boundaryOptions(), b));
     if (b.stepMm == 0) json["voxelMm"] = nullptr;
     if (b.skullMm == 0) json["skullMm"] = UsualHead(b.ageYears).skullMm;
-    json["conductivity"] = {{"brain", options.conductivities.brain},
-                            {"csf", b.withBrain ? Json(options.conductivities.csf) : Json(nullptr)},
-                            {"skull", options.conductivities.skull},
-                            {"scalp", options.conductivities.scalp}};
+    const ConductivityModel& sigma = options.conductivities;
+    json["conductivity"] = {{"white", b.innerSurfaces > 1 ? Json(sigma.white) : Json(nullptr)},
+                            {"brain", sigma.brain},
+                            {"csf", b.innerSurfaces > 0 ? Json(sigma.csf) : Json(nullptr)},
+                            {"skull", sigma.skull},
+                            {"scalp", sigma.scalp}};
     json["inputCoordinates"] = options.inputCoordinates;
     json.update(valuesJson(sourceOptions(), options.sources));
     json["leadField"] = options.leadField.empty() ? Json(nullptr) : Json(options.leadField);

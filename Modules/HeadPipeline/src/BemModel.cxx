@@ -25,9 +25,11 @@ std::string BemModel::failureText() const {
 }
 
 std::vector<double> BemModelOptions::minGapsMm() const {
-    const std::vector<double> all{boundaries.minCsfMm, boundaries.minSkullMm,
-                                  boundaries.minScalpMm};
-    return {all.end() - static_cast<std::ptrdiff_t>(surfaceCount() - 1), all.end()};
+    std::vector<double> gaps;
+    for (std::size_t n = 0; n + 1 < surfaceCount(); ++n) {
+        gaps.push_back(boundaries.minGapMm(surface(n)));
+    }
+    return gaps;
 }
 
 std::string bemSurfaceName(std::size_t surface, std::size_t count) {

@@ -410,7 +410,8 @@ BemFileKind tetrahedraFile(const Source& source, const Files& files, WriteTetrah
         [=](const fs::path& path) {
             TetrahedralMesh stored = decodeTetrahedra(bytesOf(path), path.string());
             if (arePlaces) {
-                for (std::int32_t& label : stored.labels) label += allTissues().front().label;
+                for (std::int32_t& label : stored.labels)
+                    label += allTissues(source.model.meshes.size()).front().label;
             }
             stored = byRegion(stored);
             const TetrahedralMesh mesh = byRegion(expected());
@@ -419,6 +420,25 @@ BemFileKind tetrahedraFile(const Source& source, const Files& files, WriteTetrah
             }
             return faultUnless(farthest(stored.points, mesh.points) <= kFileRoundingMm, source,
                                "its points lie elsewhere");
+        });
+}
+
+/// BEM-FMM's list: ">tissue : file : S/m : enclosing tissue", from outside in.
+BemFileKind tissueIndex(const Source& source, const Files& files) {
+    std::string lines = "% BEM-FMM: tissue, surface (scanner RAS, mm), S/m, enclosing tissue\n";
+    const std::size_t count = source.model.meshes.size();
+    std::string enclosing = "FreeSpace";
+    for (std::size_t n = count; n-- > 0;) {
+        const std::string tissue(tissueWithin(source.surface(n), count).domain);
+        lines += ">" + tissue + " : " +
+                 stlFileNames()[static_cast<std::size_t>(source.surface(n))] + " : " +
+                 formatNumber(source.conductivity(n)) + " : " + enclosing + "\n";
+        enclosing = tissue;
+    }
+    return oneFile(
+        files, [=](const fs::path& path) { writeText(path, lines); },
+        [=](const fs::path& path) {
+            return faultUnless(bytesOf(path) == lines, source, "its lines are others");
         });
 }
 
@@ -465,6 +485,10 @@ std::vector<BemFileRow> pointFileRows() {
          [](const Source& s) { return s.model.leadField && !s.model.leadField->forward.empty(); },
          forwardFile},
         {"head.sfp", {"head.sfp"}, [](const Source& s) { return s.options.writesBesa; }, besaFile},
+        {"tissue_index.txt",
+         {"tissue_index.txt"},
+         [](const Source& s) { return s.options.writesBemFmm; },
+         tissueIndex},
         {"head.msh",
          {"head.msh"},
          hasTetrahedra,
@@ -490,14 +514,16 @@ std::vector<BemFileRow> pointFileRows() {
          [](const Source& s, const Files& files) {
              return tetrahedraFile(
                  s, files,
-                 [](const auto& mesh, auto, const auto& path) {
-                     writeDgf(mesh, allTissues(), path);
+                 [](const auto& mesh, auto regions, const auto& path) {
+                     writeDgf(mesh, allTissues(regions.size()), path);
                  },
                  true);
          }},
         {"head.cond", {"head.cond"}, hasTetrahedra, [](const Source& s, const Files& files) {
-             return tableFile(s, files, {1, tissueConductivities(s.model.options.conductivities)},
-                              formatNumber);
+             return tableFile(
+                 s, files,
+                 {1, tissueConductivities(s.model.options.conductivities, s.model.meshes.size())},
+                 formatNumber);
          }}};
 }
 

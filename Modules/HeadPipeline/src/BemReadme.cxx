@@ -1,5 +1,7 @@
 #include "BemReadme.h"
 
+#include <algorithm>
+
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 
@@ -19,10 +21,22 @@ std::string frameText(CoordinateFrame frame) {
 
 std::string conductivityTuple(const BemModelOptions& options) {
     const ConductivityModel& c = options.conductivities;
-    // MNE takes the inner three of four layers' surfaces: CSF counts as brain there
+    // MNE takes the outer three surfaces: CSF counts as brain there
     if (options.boundaries.innerSkullOnly) return "(" + formatNumber(c.brain) + ",)";
     return "(" + formatNumber(c.brain) + ", " + formatNumber(c.skull) + ", " +
            formatNumber(c.scalp) + ")";
+}
+
+/// "Three surfaces: inner skull, outer skull, outer skin."
+std::string surfacesText(std::size_t count) {
+    std::vector<std::string> names;
+    for (std::size_t n = 0; n < count; ++n) {
+        names.push_back(bemSurfaceName(n, count));
+        std::replace(names.back().begin(), names.back().end(), '_', ' ');
+    }
+    const char* const number = count == 3 ? "Three" : count == 4 ? "Four" : "Five";
+    return std::string(number) + " surfaces: " + joined(names, ", ") +
+           (count > 3 ? "; CSF lies between brain and inner skull." : ".");
 }
 
 bool hasLandmarks(const BemModel& model) {
@@ -54,20 +68,29 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
         rows += std::string("| `tess_*_bem.mat` | Brainstorm | ") +
                 (hasLandmarks(model) ? "SCS" : "scanner RAS (\"world\", not SCS)") + "; metres |\n";
     }
-    if (options.writesSimNibs) {
-        rows += "| `csf.stl`, `bone.stl`, `skin.stl` | SimNIBS | scanner RAS; millimetres |\n";
+    if (options.writesStl()) {
+        rows += std::string("| `csf.stl`, `bone.stl`, `skin.stl`") +
+                (model.meshes.size() > 3 ? ", `gm.stl`" : "") +
+                (model.meshes.size() > 4 ? ", `wm.stl`" : "") +
+                (options.writesBemFmm ? " with `tissue_index.txt` | BEM-FMM (and SimNIBS)"
+                                      : " | SimNIBS") +
+                " | scanner RAS; millimetres |\n";
     }
     if (model.tetrahedra) {
+        std::vector<std::string> tissues;
+        for (const TetrahedraRegion& tissue : allTissues(model.meshes.size())) {
+            tissues.push_back(std::to_string(tissue.label) + " " + tissue.name);
+        }
+        const std::string first(1, tissues.front().front());
         rows +=
             "| `head.msh` (2.2), `head-4.1.msh`, `head.vtu` | SimNIBS and Gmsh, Gmsh, viewers; "
-            "tissues "
-            "2 brain, 3 CSF, 4 skull, 5 scalp; `head.msh` has their outer surfaces too, 1002 to "
-            "1005 | " +
-            frame +
-            "; millimetres |\n| `head.dgf` | DUNEuro; `head.cond` has "
-            "the "
-            "conductivities (S/m) of tissues 0 to 3 of `head.dgf`, of 2 to 5 of `head.msh` | " +
-            frame + "; millimetres |\n";
+            "tissues " +
+            joined(tissues, ", ") + "; `head.msh` has their outer surfaces too, 100" + first +
+            " to 1005 | " + frame +
+            "; millimetres |\n| `head.dgf` | DUNEuro; `head.cond` has the conductivities (S/m) of "
+            "tissues 0 to " +
+            std::to_string(tissues.size() - 1) + " of `head.dgf`, of " + first +
+            " to 5 of `head.msh` | " + frame + "; millimetres |\n";
     }
     if (model.sources) {
         rows += "| `dipoles.txt` | OpenMEEG | " + frame + "; " +
@@ -121,7 +144,7 @@ std::string toolboxText(const BemModel& model, const BemFileOptions& options) {
     if (options.writesFieldTrip) {
         text += isOne ? "\nFieldTrip (`type` is singleshell, which needs no more):\n```matlab\n"
                         "load headmodel.mat\n```\n"
-                      : std::string(model.options.boundaries.withBrain
+                      : std::string(model.options.boundaries.innerSurfaces > 0
                                         ? "\nFieldTrip, with OpenMEEG:\n"
                                         : "\nFieldTrip, with OpenMEEG (or ft_headmodel_dipoli, "
                                           "_bemcp):\n") +
@@ -186,11 +209,7 @@ std::string bemReadme(const BemModel& model, const BemFileOptions& options,
     const std::string unit = isMetres ? "metres" : "millimetres";
     std::string text =
         "# Boundary element head model\nMade by " + maker + ". " +
-        (isOne ? "One surface (inner skull), for MEG."
-         : model.options.boundaries.withBrain
-             ? "Four surfaces: brain, inner skull (CSF lies between them), outer skull, "
-               "outer skin."
-             : "Three surfaces: inner skull, outer skull, outer skin.") +
+        (isOne ? "One surface (inner skull), for MEG." : surfacesText(model.meshes.size())) +
         " Each is closed, of genus 0, outward" +
         (isOne ? ".\n" : ", and lies strictly inside the next.\n");
     text += "\n| files | for | frame and unit |\n|---|---|---|\n";

@@ -15,10 +15,9 @@ std::string pairName(std::size_t inner, std::size_t count) {
 
 void addVerdict(const BemModel& model, Report& report) {
     const std::size_t count = model.options.surfaceCount();
-    const std::string layers = count == 1   ? "one layer"
-                               : count == 3 ? "three layers"
-                                            : "four layers";
-    report.title = "Head model of " + layers;
+    constexpr std::array<const char*, kHeadSurfaceCount> kLayers{
+        "one layer", "two layers", "three layers", "four layers", "five layers"};
+    report.title = std::string("Head model of ") + kLayers.at(count - 1);
     if (model.hasModel()) {
         report.verdict = ReportVerdict::Passed;
         report.headline =
@@ -56,10 +55,10 @@ void addInputs(const BemModel& model, Report& report) {
 void addOptions(const BemModel& model, Report& report) {
     const BemModelOptions& options = model.options;
     const BoundaryOptions& head = options.boundaries;
-    std::string triangles = model.source == BemSource::Surfaces
-                                ? "as the surfaces came, where they could stay"
-                            : head.withBrain ? "by the layers' thickness, 10,000 vertices at most"
-                                             : "2,562 vertices a surface (default)";
+    std::string triangles =
+        model.source == BemSource::Surfaces ? "as the surfaces came, where they could stay"
+        : head.innerSurfaces > 0            ? "by the layers' thickness, 10,000 vertices at most"
+                                            : "2,562 vertices a surface (default)";
     if (options.vertices.size() == 1) {
         triangles = formatCount(options.vertices.front()) + " vertices a surface";
     } else if (!options.vertices.empty()) {
@@ -79,16 +78,21 @@ void addOptions(const BemModel& model, Report& report) {
             {"Skull, scalp at least",
              formatNumber(head.minSkullMm) + " mm, " + formatNumber(head.minScalpMm) + " mm"});
     }
-    if (head.withBrain) {
+    if (head.innerSurfaces > 0) {
         report.options.push_back({"CSF at least", formatNumber(head.minCsfMm) + " mm"});
+    }
+    if (head.innerSurfaces > 1) {
+        report.options.push_back({"Grey matter at least", formatNumber(head.minGreyMm) + " mm"});
     }
     report.options.push_back({"Smoothing", formatNumber(head.smoothingMm) + " mm"});
     const ConductivityModel& sigma = options.conductivities;
     report.options.push_back(
-        {"Conductivity", "brain " + formatNumber(sigma.brain) +
-                             (head.withBrain ? ", CSF " + formatNumber(sigma.csf) : "") +
-                             ", skull " + formatNumber(sigma.skull) + ", scalp " +
-                             formatNumber(sigma.scalp) + " S/m"});
+        {"Conductivity",
+         (head.innerSurfaces > 1 ? "white matter " + formatNumber(sigma.white) + ", grey matter "
+                                 : "brain ") +
+             formatNumber(sigma.brain) +
+             (head.innerSurfaces > 0 ? ", CSF " + formatNumber(sigma.csf) : "") + ", skull " +
+             formatNumber(sigma.skull) + ", scalp " + formatNumber(sigma.scalp) + " S/m"});
     report.options.push_back(
         {"FreeSurfer's files in", model.tkRasVolume ? "tkRAS mm" : "scanner RAS mm"});
 }

@@ -20,11 +20,12 @@ constexpr NumberRule lengthTo(double mostMm) {
 }
 
 /// Options that need another.
-constexpr std::array<std::pair<const char*, const char*>, 10> kNeeds{{
+constexpr std::array<std::pair<const char*, const char*>, 11> kNeeds{{
     {"brain-mask", "t1"},
     {"aseg", "t1"},
     {"lesion", "t1"},
     {"pial", "t1"},
+    {"white", "t1"},
     {"volume", "surfaces"},
     {"head-mask", "labels"},
     {"preset", "labels"},
@@ -43,7 +44,8 @@ Fault faultOfNumbers(const BemModelOptions& options) {
         return "{" + std::string(row.facts.name) + "} " + formatNumber(value) + ": must be " +
                toWords(row.facts.rule);
     }
-    const auto [least, most] = std::minmax({head.minSkullMm, head.minScalpMm, head.minCsfMm});
+    const auto [least, most] =
+        std::minmax({head.minSkullMm, head.minScalpMm, head.minCsfMm, head.minGreyMm});
     if (!(least >= CheckRules::kLeastGapMm) || !(most <= kMostGapMm)) {
         return "{min-gap} must be " + formatNumber(CheckRules::kLeastGapMm) +
                " mm or more, as adaptiso-check wants it, and at most " + formatNumber(kMostGapMm);
@@ -95,8 +97,11 @@ Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request,
             return "{" + std::string(option) + "} needs {" + needed + "}";
         }
     }
-    const bool withBrain = options.boundaries.withBrain, isOne = options.boundaries.innerSkullOnly;
+    const bool withBrain = options.boundaries.innerSurfaces > 0;
+    const bool withWhite = options.boundaries.innerSurfaces > 1;
+    const bool isOne = options.boundaries.innerSkullOnly;
     const std::string count = std::to_string(options.surfaceCount());
+    const std::size_t sigmas = options.conductivitiesGiven;
     const TissueLabels& tissues = request.tissues;
     const bool hasLabels = has("labels");
     const std::string presetOr = naming("preset") == naming("tissue") ? "" : "{preset}, or ";
@@ -104,17 +109,25 @@ Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request,
     const std::string leadFieldNeeds =
         has("lead-field") ? missingForLeadField(options, request) : "";
     const std::pair<bool, std::string> faults[] = {
-        {withBrain && isOne, "{layers} 4 and {meg} exclude each other"},
+        {withBrain && isOne, "{layers} 4 or 5 and {meg} exclude each other"},
         {withBrain && has("ct"),
-         "{layers} 4 does not go with {ct}: a CT does not show where the brain ends and CSF "
-         "begins"},
-        {options.namesCsf && !withBrain, "{conductivity}: four numbers need {layers} 4"},
-        {has("input-coordinates") && !has("surfaces") && !has("pial") && !has("sources"),
-         "{input-coordinates} needs {surfaces}, {pial} or {sources}"},
+         "{layers} " + count +
+             " does not go with {ct}: a CT does not show where the brain ends and CSF "
+             "begins"},
+        {sigmas == 4 && count != "4", "{conductivity}: four numbers need {layers} 4"},
+        {(sigmas == 5) != withWhite && sigmas > 0,
+         "{conductivity}: five numbers and {layers} 5 need each other"},
+        {withWhite && has("t1") && !has("aseg") && !has("white"),
+         "{layers} 5 needs {aseg} or {white}: a T1 alone does not show white matter"},
+        {has("input-coordinates") && !has("surfaces") && !has("pial") && !has("white") &&
+             !has("sources"),
+         "{input-coordinates} needs {surfaces}, {pial}, {white} or {sources}"},
         {hasLabels && tissues.brain.empty() && !tissues.othersAreBrain,
          "{labels} needs " + presetOr + "{tissue} brain=..., skull=... and scalp=..."},
         {hasLabels && withBrain && tissues.csf.empty(),
-         "{layers} 4 needs {tissue} csf=... as well"},
+         "{layers} " + count + " needs {tissue} csf=... as well"},
+        {hasLabels && withWhite && tissues.white.empty(),
+         "{layers} 5 needs {tissue} white=... as well"},
         {hasLabels && !isOne && !preset.empty() && !tissues.skull.empty() &&
              tissues.scalp.empty() && !has("head-mask"),
          preset + " has no scalp: give {head-mask} (or {meg})"},
@@ -192,7 +205,9 @@ const Options<BoundaryOptions>& boundaryOptions() {
             {.name = "sulci",
              .key = "sulciMm",
              .valueName = "MM",
-             .help = "Sulci of the brain's own surface narrower than twice this are closed",
+             .help =
+                 "Sulci of the brain's own surface narrower than twice this, and folds of white "
+                 "matter narrower than four times this, are closed",
              .standard = "3",
              .rule = lengthTo(30)}),
         option<&BoundaryOptions::smoothingMm>(
@@ -269,16 +284,19 @@ const Options<BoundaryOptions>& boundaryOptions() {
 }
 
 bool setLayers(BemModelOptions& options, std::int64_t layers) {
-    options.boundaries.withBrain = layers == 4;
+    if (layers != 1 && (layers < 3 || layers > 5)) return false;
     if (layers == 1) options.boundaries.innerSkullOnly = true;
-    return layers == 1 || layers == 3 || layers == 4;
+    options.boundaries.innerSurfaces = layers > 3 ? static_cast<std::size_t>(layers - 3) : 0;
+    options.conductivities = standardConductivities(static_cast<std::size_t>(layers));
+    return true;
 }
 
 bool setMinGaps(BemModelOptions& options, std::span<const double> gapsMm) {
-    if (gapsMm.empty() || gapsMm.size() > 3) return false;
+    if (gapsMm.empty() || gapsMm.size() > 4) return false;
     options.boundaries.minSkullMm = gapsMm.front();
     options.boundaries.minScalpMm = gapsMm.size() > 1 ? gapsMm[1] : gapsMm.front();
     if (gapsMm.size() > 2) options.boundaries.minCsfMm = gapsMm[2];
+    if (gapsMm.size() > 3) options.boundaries.minGreyMm = gapsMm[3];
     return true;
 }
 
@@ -289,12 +307,12 @@ bool setEdgeLengths(BemModelOptions& options, std::span<const double> lengthsMm)
 }
 
 bool setConductivities(BemModelOptions& options, std::span<const double> sigmas) {
-    if (sigmas.size() != 3 && sigmas.size() != 4) return false;
-    options.namesCsf = sigmas.size() == 4;
-    options.conductivities.brain = sigmas.front();
-    if (options.namesCsf) options.conductivities.csf = sigmas[1];
-    options.conductivities.skull = sigmas[sigmas.size() - 2];
-    options.conductivities.scalp = sigmas.back();
+    const std::size_t count = sigmas.size();
+    if (count < 3 || count > 5) return false;
+    options.conductivitiesGiven = count;
+    for (std::size_t n = 0; n < count; ++n) {
+        options.conductivities.*tissueWithin(headSurface(n, count), count).conductivity = sigmas[n];
+    }
     return true;
 }
 
@@ -344,6 +362,7 @@ HeadBoundaries findBoundaries(const BemModel& model, const BemImages& images, co
         return found;
     } catch (const SourceError& error) {
         const char* name = "pial";
+        if (error.source() == BoundarySource::White) name = "white";
         if (error.source() == BoundarySource::Lesion) name = "lesion";
         if (error.source() == BoundarySource::HeadMask) name = "head-mask";
         if (error.source() == BoundarySource::BrainMask) {

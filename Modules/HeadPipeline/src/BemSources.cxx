@@ -119,7 +119,7 @@ void placeSources(BemModel& model, const BemHooks& hooks) {
 }
 
 void checkPial(BemModel& model) {
-    const std::size_t innerSkull = model.options.boundaries.withBrain ? 1 : 0;
+    const std::size_t innerSkull = model.options.boundaries.innerSurfaces;
     constexpr double kMostOutside = 0.01;
     std::int64_t outside = 0, all = 0;
     for (const TriangleMesh& surface : model.pial) {

@@ -10,26 +10,26 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/HeadPipeline/BemChecks.h"
+#include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/BemSources.h"
 
 namespace adaptiso {
 namespace {
 
 constexpr std::int64_t kDefaultVertices = 2562;
-constexpr std::int64_t kMostVertices = 200'000;  // no solver takes as many
 constexpr double kFitMm = 0.5;
 /// Files keep floats: a gap must not fall short by their rounding (3e-5 mm at 500 mm).
 constexpr double kRoundingMm = 1e-4;
 
-/// The thinnest of four layers, the CSF, decides how short edges are: adaptive lengths,
+/// The thinnest of four or five layers, the CSF, decides how short edges are: adaptive lengths,
 /// scaled until the whole model has no more vertices than solvers take. What flat triangles do to
 /// the layers' thickness cancels in part where surfaces are alike: of limits tried on spheres 4 to
 /// 5 mm lost at no eccentricity, 4 to 8 mm at 0.9 (HeadModel.md).
-constexpr EdgeLengthRange kFourLayerEdgesMm{4, 5};
+constexpr EdgeLengthRange kThinLayerEdgesMm{4, 5};
 constexpr std::int64_t kManyVertices = 10'000;  // MNE warns of more
 
 bool choosesVertices(const BemModel& model) {
-    return model.options.boundaries.withBrain && model.options.vertices.empty() &&
+    return model.options.boundaries.innerSurfaces > 0 && model.options.vertices.empty() &&
            !model.options.edgeLengthMm;
 }
 
@@ -40,7 +40,7 @@ RemeshOptions remeshOptions(const BemModel& model, const std::vector<TriangleMes
     // what is left of the voxels' stairs after smoothing; ready surfaces are taken at their word
     if (model.source != BemSource::Surfaces) remesh.fitMm = kFitMm;
     remesh.edgeLengthMm = options.edgeLengthMm;
-    if (choosesVertices(model)) remesh.edgeLengthMm = kFourLayerEdgesMm;
+    if (choosesVertices(model)) remesh.edgeLengthMm = kThinLayerEdgesMm;
     const std::int64_t usual = model.surfaces[n].ownVertices.value_or(kDefaultVertices);
     remesh.vertices = options.verticesOf(n).value_or(options.edgeLengthMm ? 0 : usual);
     if (n > 0) remesh.neighbours.push_back(&dense[n - 1]);
@@ -55,9 +55,9 @@ void requireFewVertices(const TriangleMesh& mesh, const BemModel& model, std::si
     // equilateral triangles, two a vertex, with the longest edges allowed
     const double longestMm = options.edgeLengthMm->maximumMm;
     const double least = surfaceArea(mesh) / (std::sqrt(3.0) / 2 * longestMm * longestMm);
-    if (least <= kMostVertices) return;
+    if (least <= kMostBemVertices) return;
     throw InvalidInput("edges of at most " + formatShort(longestMm) + " mm make more than " +
-                       formatCount(kMostVertices) + " vertices of " +
+                       formatCount(kMostBemVertices) + " vertices of " +
                        bemSurfaceName(n, model.surfaces.size()) + "; they must be longer");
 }
 
@@ -76,8 +76,8 @@ std::vector<std::vector<double>> chooseVertices(const std::vector<TriangleMesh>&
     if (all > most) {
         model.notes.push_back(
             "edges as long as the layers beside them are thick (" +
-            formatShort(kFourLayerEdgesMm.minimumMm) + " to " +
-            formatShort(kFourLayerEdgesMm.maximumMm) + " mm) take " + formatCount(all) +
+            formatShort(kThinLayerEdgesMm.minimumMm) + " to " +
+            formatShort(kThinLayerEdgesMm.maximumMm) + " mm) take " + formatCount(all) +
             " vertices; all edges are " +
             formatFixed(std::sqrt(static_cast<double>(all) / static_cast<double>(most)), 2) +
             " times as long, for " + formatCount(most));
@@ -134,8 +134,9 @@ std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemMo
 std::vector<TriangleMesh> nested(const std::vector<TriangleMesh>& surfaces, BemModel& model,
                                  const BemHooks& hooks) {
     NestOptions nest;
-    // its distance to the sources is what potentials depend on most; the brain gives way
-    nest.fixedSurface = model.options.boundaries.withBrain ? 1 : 0;
+    // its distance to the sources is what potentials depend on most; brain and white matter give
+    // way
+    nest.fixedSurface = model.options.boundaries.innerSurfaces;
     nest.minGapsMm.clear();
     for (const double gap : model.options.minGapsMm()) nest.minGapsMm.push_back(gap + kRoundingMm);
     NestResult result;
@@ -207,7 +208,8 @@ std::string cm2Text(double mm2) {
 /// Warns where the model's skull and volumes differ from the segmentation.
 void compareWithSegmentation(BemModel& model) {
     if (!model.segmented) return;
-    const std::size_t first = model.meshes.size() - 3;  // of the surfaces, the brain left out
+    const std::size_t first =
+        model.meshes.size() - 3;  // of the surfaces, those within the inner skull left out
     for (std::size_t n = 0; n < 3; ++n) {
         const double mm3 = model.segmented->enclosedMm3[n];
         BemSurface& surface = model.surfaces[first + n];
@@ -260,8 +262,10 @@ void warnOfMany(BemModel& model) {
     for (const TriangleMesh& surface : model.meshes) vertices += std::ssize(surface.points);
     if (vertices <= kManyVertices) return;
     model.warnings.push_back(
-        {"many-vertices",
-         formatCount(vertices) + " vertices in all; MNE warns above 10,000; ask for fewer"});
+        {"many-vertices", formatCount(vertices) +
+                              " vertices in all; MNE and OpenMEEG store their square (MNE warns "
+                              "above 10,000); ask for fewer, but for a "
+                              "fast multipole solver"});
 }
 
 /// The skin as it was found, and the model's with few triangles.

@@ -52,7 +52,7 @@ void noteLongElements(BemModel& model, const TetrahedralMesh& mesh,
 /// the surfaces are closed there, as boundary elements need. \pre model.segmented
 void openHoles(BemModel& model, TetrahedralMesh& mesh) {
     const std::size_t count = model.meshes.size();
-    const std::int32_t skull = tissueNumber(HeadSurface::OuterSkull, count);
+    const std::int32_t skull = tissueWithin(HeadSurface::OuterSkull, count).number;
     std::vector<std::size_t> elements;
     std::vector<Vec3> middlesMm;
     for (std::size_t n = 0; n < mesh.tetrahedra.size(); ++n) {
@@ -68,7 +68,7 @@ void openHoles(BemModel& model, TetrahedralMesh& mesh) {
     double mm3 = 0;
     for (std::size_t n = 0; n < elements.size(); ++n) {
         if (!areOpen[n]) continue;
-        mesh.labels[elements[n]] = tissueNumber(HeadSurface::OuterSkin, count);
+        mesh.labels[elements[n]] = tissueWithin(HeadSurface::OuterSkin, count).number;
         mm3 += volumeOf(mesh, mesh.tetrahedra[elements[n]]);
         ++opened;
     }

@@ -36,11 +36,15 @@ TEST(HeadTetrahedra, RegionsAreTissuesBetweenSurfaces) {
     EXPECT_NEAR(regions[2].mm3, enclosedVolume(surfaces[2]) - enclosedVolume(surfaces[1]), 1e-6);
 }
 
-TEST(HeadTetrahedra, ATissuesPlaceIsItsNumberLessTwo) {
-    const std::vector<TetrahedraRegion> tissues = allTissues();
-    ASSERT_EQ(tissues.size(), 4u);
-    for (std::size_t n = 0; n < 4; ++n) EXPECT_EQ(tissues[n].label, static_cast<int>(n + 2));
-    EXPECT_EQ(tissueConductivities({0.33, 0.01, 0.43, 1.79}),
+TEST(HeadTetrahedra, ATissuesPlaceIsItsNumberLessTheFirstOnes) {
+    for (const std::size_t count : {1u, 3u, 4u, 5u}) {
+        const std::vector<TetrahedraRegion> tissues = allTissues(count);
+        ASSERT_EQ(tissues.size(), count == 5 ? 5u : 4u);
+        for (std::size_t n = 0; n < tissues.size(); ++n) {
+            EXPECT_EQ(tissues[n].label, static_cast<int>(n + 6 - tissues.size()));
+        }
+    }
+    EXPECT_EQ(tissueConductivities({0.33, 0.01, 0.43, 1.79}, 4),
               (std::vector<double>{0.33, 1.79, 0.01, 0.43}));
 }
 

@@ -227,7 +227,7 @@ TEST(BoundariesFromT1, RecogniseAT2) {
     EXPECT_TRUE(isTold(found));
     // CSF is bright, so the inner skull itself is seen; voxels have 2 mm
     EXPECT_LE(surfaceError(found.solids[0], head.shapes.innerSkull).largestMm, 3);
-    options.withBrain = true;
+    options.innerSurfaces = 1;
     EXPECT_THROW(boundariesFromT1({t2.data(), head.geometry}, std::nullopt, options), InvalidInput);
 }
 
@@ -411,7 +411,7 @@ TEST(BoundariesFromT1, FindTheBrainsOwnSurface) {
     BoundaryOptions options;
     options.stepMm = 2;
     options.smoothingMm = 2;
-    options.withBrain = true;
+    options.innerSurfaces = 1;
     options.sulciMm = 2;
     BrainSources byMask, byLabels, byPial;
     byMask.mask = VolumeView(mask.data(), head.geometry);
@@ -433,7 +433,7 @@ TEST(BoundariesFromT1, RefuseAPialSurfaceOfAnotherSpace) {
     const std::vector<float> t1 = headT1(head.shapes, 2, head.geometry);
     BoundaryOptions options;
     options.stepMm = 2;
-    options.withBrain = true;
+    options.innerSurfaces = 1;
     BrainSources sources;
     sources.pial = {icosphere(2, {3, -4, 8}, 12)};  // 7 cm3
     expectRefused(
@@ -448,7 +448,7 @@ TEST(BoundariesFromCt, RefuseFourLayers) {
     const ImageGeometry geometry = centredGeometry({84, 84, 84});
     const std::vector<float> ct = headCt(head, geometry);
     BoundaryOptions options = quick();
-    options.withBrain = true;
+    options.innerSurfaces = 1;
     expectRefused([&] { boundariesFromCt({ct.data(), geometry}, options); }, "a CT does not show");
 }
 

@@ -53,7 +53,7 @@ TEST(BoundariesFromLabels, FindABrainWithinCsf) {
     const ImageGeometry geometry = centredGeometry({84, 84, 84});
     const std::vector<std::uint8_t> labels = fourTissues(head, brain, geometry);
     BoundaryOptions options = quick();
-    options.withBrain = true;
+    options.innerSurfaces = 1;
     const HeadBoundaries found =
         boundariesFromLabels({labels.data(), geometry}, {{4}, {2}, {3}, false, {1}}, options);
     ASSERT_EQ(found.solids.size(), 4u);
@@ -78,7 +78,7 @@ TEST(BoundariesFromLabels, LetTheBrainGiveWayToTheLeastCsf) {
     const ImageGeometry geometry = centredGeometry({84, 84, 84});
     const std::vector<std::uint8_t> labels = fourTissues(head, brain, geometry);
     BoundaryOptions options = quick();
-    options.withBrain = true;
+    options.innerSurfaces = 1;
     options.minCsfMm = 2;
     const HeadBoundaries found =
         boundariesFromLabels({labels.data(), geometry}, {{4}, {2}, {3}, false, {1}}, options);
@@ -92,7 +92,7 @@ TEST(BoundariesFromLabels, RefuseFourLayersWithoutCsf) {
     const ImageGeometry geometry = centredGeometry({84, 84, 84});
     const std::vector<std::uint8_t> labels = headLabels(head, geometry);
     BoundaryOptions options = quick();
-    options.withBrain = true;
+    options.innerSurfaces = 1;
     expectRefused(
         [&] {
             boundariesFromLabels({labels.data(), geometry}, numbered(), options);
@@ -104,6 +104,84 @@ TEST(BoundariesFromLabels, RefuseFourLayersWithoutCsf) {
             boundariesFromLabels({labels.data(), geometry}, numbered(), options);
         },
         "one surface and four");
+}
+
+/// fourTissues() and in them white matter, 5, with a ventricle of 5 mm radius (CSF) that opens into
+/// the brain by a door of 2 mm.
+std::vector<std::uint8_t> fiveTissues(const HeadShapes& head, const Shape& brain,
+                                      const Shape& white, const ImageGeometry& geometry) {
+    std::vector<std::uint8_t> labels = fourTissues(head, brain, geometry);
+    const std::vector<float> part = partInside(white, geometry);
+    const std::vector<float> ventricle = partInside(sphere(kCentre, 5), geometry);
+    const std::vector<float> door = partInside(box(kCentre + Vec3{0, 0, 10}, {1, 1, 12}), geometry);
+    for (std::size_t n = 0; n < labels.size(); ++n) {
+        if (part[n] < 0.5f) continue;
+        labels[n] = ventricle[n] >= 0.5f || door[n] >= 0.5f ? 1 : 5;
+    }
+    return labels;
+}
+
+const TissueLabels kFive{{4}, {2}, {3}, false, {1}, {5}};
+
+TEST(BoundariesFromLabels, FindWhiteMatterWithinTheBrain) {
+    const HeadShapes head = smallHead();
+    const Shape brain = sphere(kCentre, 22), white = sphere(kCentre, 16);
+    const ImageGeometry geometry = centredGeometry({84, 84, 84});
+    const std::vector<std::uint8_t> labels = fiveTissues(head, brain, white, geometry);
+    BoundaryOptions options = quick();
+    options.innerSurfaces = 2;
+    options.sulciMm = 0;  // the ventricle is filled all the same
+    const HeadBoundaries found = boundariesFromLabels({labels.data(), geometry}, kFive, options);
+    ASSERT_EQ(found.solids.size(), 5u);
+    // half a voxel, as of the other spheres
+    EXPECT_LE(surfaceError(found.solids[0], white).largestMm, 0.5);
+    EXPECT_LE(surfaceError(found.solids[1], brain).largestMm, 0.5);
+
+    // the four around it are those of four layers, to the bit
+    options.innerSurfaces = 1;
+    const HeadBoundaries four = boundariesFromLabels({labels.data(), geometry}, kFive, options);
+    for (std::size_t n = 0; n < 4; ++n) EXPECT_EQ(four.solids[n].part, found.solids[n + 1].part);
+}
+
+TEST(BoundariesFromLabels, LetTheWhiteMatterGiveWayToTheLeastGreyMatter) {
+    const HeadShapes head = smallHead();
+    const Shape brain = sphere(kCentre, 22);
+    const ImageGeometry geometry = centredGeometry({84, 84, 84});
+    // touches the brain's surface on one side
+    const std::vector<std::uint8_t> labels =
+        fiveTissues(head, brain, sphere(kCentre + Vec3{6, 0, 0}, 16), geometry);
+    BoundaryOptions options = quick();
+    options.innerSurfaces = 2;
+    options.minGreyMm = 2;
+    const HeadBoundaries found = boundariesFromLabels({labels.data(), geometry}, kFive, options);
+    // to about a voxel, as of the other layers; the brain stays
+    EXPECT_GE(gapsOf(found).front(), 1.0);
+    EXPECT_LE(surfaceError(found.solids[1], brain).largestMm, 0.5);
+}
+
+TEST(BoundariesFromLabels, RefuseWhiteMatterInTwoPieces) {
+    const HeadShapes head = smallHead();
+    const ImageGeometry geometry = centredGeometry({84, 84, 84});
+    std::vector<std::uint8_t> labels =
+        fiveTissues(head, sphere(kCentre, 22), sphere(kCentre, 18), geometry);
+    const std::vector<float> between = partInside(box(kCentre, {5, 40, 40}), geometry);
+    for (std::size_t n = 0; n < labels.size(); ++n) {
+        if (labels[n] == 5 && between[n] >= 0.5f) labels[n] = 4;
+    }
+    BoundaryOptions options = quick();
+    options.innerSurfaces = 2;
+    options.sulciMm = 1;  // else they are joined
+    expectRefused(
+        [&] {
+            boundariesFromLabels({labels.data(), geometry}, kFive, options);
+        },
+        "the white matter is no single piece");
+}
+
+TEST(BoundariesFromLabels, KnowWhiteMatterOfEveryProgramThatHasIt) {
+    for (const std::string& name : tissuePresetNames()) {
+        EXPECT_EQ(tissuePreset(name).white.empty(), name == "totalsegmentator") << name;
+    }
 }
 
 TEST(BoundariesFromLabels, FindSpheresInThickSlices) {

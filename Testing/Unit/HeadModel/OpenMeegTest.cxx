@@ -203,6 +203,20 @@ TEST_F(OpenMeegModelTest, RefusesWhatIsNoFileOrTooLong) {
     expectRefused("larger than any such file");
 }
 
+TEST(OpenMeegTexts, HaveFiveDomainsWithinTheAir) {
+    const std::string geometry =
+        openMeegGeometry(std::vector<std::string>{"a.tri", "b.tri", "c.tri", "d.tri", "e.tri"});
+    EXPECT_NE(geometry.find("Interface WhiteMatter: \"a.tri\"\nInterface Cortex: \"b.tri\"\n"),
+              std::string::npos);
+    EXPECT_NE(geometry.find("Domain White: -WhiteMatter\nDomain Gray: +WhiteMatter -Cortex\n"
+                            "Domain CSF: +Cortex -Inner\n"),
+              std::string::npos);
+    EXPECT_EQ(openMeegConductivities(5, standardConductivities(5)),
+              "# Properties Description 1.0 (Conductivities)\n\nWhite 0.126\nGray 0.275\n"
+              "CSF 1.654\nSkull 0.01\nSkin 0.465\nAir 0\n");
+    EXPECT_EQ(standardConductivities(4).within(HeadSurface::Brain, 4), 0.3);
+}
+
 TEST(OpenMeegTexts, RefuseOtherNumbersOfSurfaces) {
     EXPECT_THROW(openMeegGeometry(std::vector<std::string>{"a.tri", "b.tri"}), InvalidInput);
     EXPECT_THROW(openMeegConductivities(2, {}), InvalidInput);

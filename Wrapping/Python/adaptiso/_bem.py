@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from ._option_types import BemOptions
 
 PRESETS = tuple(_adaptiso.tissue_presets())
-TISSUES = ("brain", "csf", "skull", "scalp")
+TISSUES = ("white", "brain", "csf", "skull", "scalp")
 MONTAGES = ("10-20", "10-10", "10-05")
 MESHERS = ("tetgen", "gmsh")
-#: From inside out; models have the last one to three of them, or all.
-SURFACES = ("brain", "inner_skull", "outer_skull", "outer_skin")
+#: From inside out; models have the inner skull alone, or the last three to five of them.
+SURFACES = ("white_matter", "brain", "inner_skull", "outer_skull", "outer_skin")
 
 #: MNE's numbers of the surfaces (FIFFV_BEM_SURF_ID_*) and of the frame (FIFFV_COORD_MRI).
 _MNE_SURFACES = {"inner_skull": 1, "outer_skull": 3, "outer_skin": 4}
@@ -116,7 +116,7 @@ class HeadModel:
     @property
     def surfaces(self) -> Dict[str, Mesh]:
         """By name, from inside out, scanner RAS mm: "inner_skull", "outer_skull", "outer_skin" (of
-        MEG the first alone, of four layers "brain" before them). Each is closed, in one piece, of
+        MEG the first alone, of four layers "brain" before them, of five "white_matter" too). Each is closed, in one piece, of
         genus 0, and does not cross itself; each lies strictly inside the next, with the gaps asked
         for."""
         if self._surfaces is None:
@@ -155,7 +155,7 @@ class HeadModel:
 
         In metres, in MNE's frame "MRI": FreeSurfer's surface RAS (tkRAS) of the image, or of the
         volume that FreeSurfer makes of it. Needs no FreeSurfer folder and no ``SUBJECTS_DIR``. Of
-        four layers MNE takes three: all within the inner skull has the brain's conductivity.
+        four or five layers MNE takes three: all within the inner skull has the brain's conductivity.
 
         Returns
         -------
@@ -178,7 +178,7 @@ class HeadModel:
 
     def save(self, folder: Any, *, replace: bool = False, units: str = "mm", frame: str = "ras",
              gifti: bool = False, vtp: bool = False, fif: bool = False, fieldtrip: bool = False,
-             brainstorm: bool = False, simnibs: bool = False, besa: bool = False) -> None:
+             brainstorm: bool = False, simnibs: bool = False, bem_fmm: bool = False, besa: bool = False) -> None:
         """Write the folder that adaptiso-bem writes: files for FreeSurfer, MNE and OpenMEEG,
         electrodes where there are, a README.md that says how to use them, and report.json.
 
@@ -197,9 +197,9 @@ class HeadModel:
             Of all files but FreeSurfer's (.surf), which are in tkRAS.
         gifti, vtp : bool
             Write .gii and .vtp files too.
-        fif, fieldtrip, brainstorm, simnibs, besa : bool
+        fif, fieldtrip, brainstorm, simnibs, bem_fmm, besa : bool
             Write the files of MNE (bem.fif; head-dense.fif and head-sparse.fif of a model made with
-            ``head_shape=True``), FieldTrip, Brainstorm, SimNIBS and BESA too, as the
+            ``head_shape=True``), FieldTrip, Brainstorm, SimNIBS, BEM-FMM and BESA too, as the
             program's options of these names do. BESA's needs landmarks.
 
         Raises
@@ -211,7 +211,7 @@ class HeadModel:
         options: Dict[str, Any] = {"units": word("units", units, ("mm", "m")),
                                    "frame": word("frame", frame, ("ras", "lps", "tkras"))}
         for name, value in (("gifti", gifti), ("vtp", vtp), ("fif", fif), ("fieldtrip", fieldtrip),
-                            ("brainstorm", brainstorm), ("simnibs", simnibs), ("besa", besa)):
+                            ("brainstorm", brainstorm), ("simnibs", simnibs), ("bem_fmm", bem_fmm), ("besa", besa)):
             options[name] = flag(name, value)
         if not self._data.has_model:
             raise Error("there is no model to save")
@@ -270,6 +270,7 @@ class _Source(NamedTuple):
     images: List[Samples]
     masks: Dict[str, Samples]
     pial: List[Mesh]
+    white: List[Mesh]
     sources: List[Mesh]
     surfaces: List[Mesh]
     inputs: List[List[str]]
@@ -280,6 +281,7 @@ class _Source(NamedTuple):
         return {"kind": self.kind, "images": [image.volume for image in self.images],
                 "masks": {name: image.volume for name, image in self.masks.items()},
                 "pial": [mesh._data for mesh in self.pial],
+                "white": [mesh._data for mesh in self.white],
                 "sources": [mesh._data for mesh in self.sources],
                 "surfaces": [mesh._data for mesh in self.surfaces], "inputs": self.inputs,
                 "warnings": self.warnings}
@@ -287,21 +289,21 @@ class _Source(NamedTuple):
 
 @takes("bem")
 def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any = None,
-        pial: Optional[Sequence[Any]] = None, labels: Any = None,
+        pial: Optional[Sequence[Any]] = None, white: Optional[Sequence[Any]] = None, labels: Any = None,
         tissues: Union[str, Mapping[str, Sequence[int]], None] = None, head_mask: Any = None,
         probabilities: Optional[Sequence[Any]] = None, ct: Any = None,
         surfaces: Union[Sequence[Any], Mapping[str, Any], None] = None, volume: Any = None,
         input_coordinates: Union[str, Sequence[Optional[str]], None] = None,
         affine: Any = None, layers: int = 3, vertices: Union[int, Sequence[int], None] = None,
         edge_length: Optional[Tuple[float, float]] = None, meg: bool = False,
-        min_gap: Union[float, Sequence[float]] = (2, 2, 1), conductivity: Sequence[float] = (0.3, 0.006, 0.3),
+        min_gap: Union[float, Sequence[float]] = (2, 2, 1, 1), conductivity: Optional[Sequence[float]] = None,
         electrodes: Union[Mapping[str, Point], Any] = None, electrodes_in: Optional[str] = None,
         montage: Optional[str] = None, landmarks: Union[Mapping[str, Point], str, None] = None,
         sources: Optional[Sequence[Any]] = None, head_shape: bool = False,
         tetrahedra: Optional[str] = None, threads: int = 0,
         progress: Optional[Progress] = None, **numbers: Unpack[BemOptions]) -> HeadModel:
-    """Make the nested surfaces of a head model: inner skull, outer skull, outer skin, and with four
-    layers the brain; electrodes on the skin.
+    """Make the nested surfaces of a head model: inner skull, outer skull, outer skin, with four
+    layers the brain, with five the white matter; electrodes on the skin.
 
     Does what the program adaptiso-bem does: the same samples and options give the same surfaces, to the
     byte, for any number of threads. One of `t1`, `labels`, `probabilities`, `ct` and `surfaces` is
@@ -316,17 +318,20 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
         Without it the brain is guessed, good enough for a clean T1; look at the result.
     aseg : image, optional
         With `t1`: FreeSurfer's or FastSurfer's aseg: the brain mask where `brain_mask` is missing, and with
-        four layers the brain's own surface.
+        four or five layers the surfaces of brain and white matter.
     lesion : image, optional
         With `t1`: a mask of lesions within the skull; they count as brain, whatever their values.
     pial : sequence, optional
         With `t1`: the cortex, as `surfaces`: ``["lh.pial", "rh.pial"]``. The inner skull holds it,
-        and with four layers the brain's own surface.
+        and with four or five layers the brain's own surface.
+    white : sequence, optional
+        With `t1` and five layers: the white matter's surfaces, as `pial`, besides `aseg` or instead.
     labels : image, optional
         A segmentation; `tissues` says of what.
     tissues : str or dict, optional
         With `labels`: whose they are, by a preset of adaptiso-bem ("charm", ...), or ``{"brain": [1, 2, 3], "skull": [4], "scalp": [5]}``; CSF
-        belongs to the brain, or with four layers is named apart: ``"csf": [3]``.
+        belongs to the brain, or with four layers is named apart: ``"csf": [3]``, with
+        five the white matter too: ``"white": [1]``.
     head_mask : image, optional
         With `labels`: what is not 0 there lies within the skin; needed where no label is the
         scalp's, as with "totalsegmentator" (its task body, on the same grid).
@@ -340,25 +345,27 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
     volume : image, optional
         With `surfaces`: the image they belong to, for tkRAS.
     input_coordinates : {"ras", "lps", "tkras", "voxel"}, or a sequence of one for each, optional
-        The frame of the files of `surfaces`, `pial` and `sources`, in this order, whatever the file
+        The frame of the files of `surfaces`, `pial`, `white` and `sources`, in this order, whatever the file
         says of it.
     affine : array_like of shape (4, 4), optional
         Of images that are plain arrays: voxel indices to scanner RAS mm.
-    layers : {3, 4, 1}
-        4: the brain's own surface as well, CSF between it and the inner skull; 1: as `meg`.
+    layers : {3, 4, 5, 1}
+        4: the brain's own surface as well, CSF between it and the inner skull; 5: the white
+        matter's within it; 1: as `meg`.
     vertices : int or sequence of int, optional
         Of each surface, evenly spread, 42 to 200,000; or one number for each, from inside out.
-        Default: 2562; with four layers by the layers' thickness, 10,000 in all at most.
+        Default: 2562; with four or five layers by the layers' thickness, 10,000 in all at most.
     edge_length : (float, float), optional
         Shortest and longest edge, mm: short where a surface bends or another is near.
     meg : bool
         The inner skull alone.
-    min_gap : float or sequence of two or three floats
-        Least thickness of skull, scalp and, with four layers, CSF, mm, 0.5 to 20; guaranteed.
+    min_gap : float or sequence of two to four floats
+        Least thickness of skull, scalp and, with four layers, CSF, with five grey matter, mm, 0.5 to 20; guaranteed.
     **options
-    conductivity : sequence of three or four floats
-        Of brain, skull and scalp, S/m; with four layers of brain, CSF, skull and scalp (default of
-        CSF: 1.79).
+    conductivity : sequence of three to five floats, optional
+        Of brain, skull and scalp, S/m (default: 0.3, 0.006, 0.3); with four layers of brain, CSF,
+        skull and scalp (CSF: 1.79); with five of white and grey matter, CSF, skull and scalp
+        (default: 0.126, 0.275, 1.654, 0.01, 0.465).
     electrodes : path or mapping of str to (float, float, float), optional
         Electrodes, moved onto the skin: a file (BIDS, FIFF and those of other toolboxes), or
         places by name, scanner RAS mm. Those without a place (None, NaN) are left out with a warning.
@@ -414,7 +421,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
     given = {name: value for name, value in (
         ("t1", t1), ("labels", labels), ("probabilities", probabilities), ("ct", ct),
         ("surfaces", surfaces), ("brain_mask", brain_mask), ("aseg", aseg), ("lesion", lesion),
-        ("head_mask", head_mask), ("pial", pial), ("volume", volume), ("tissues", tissues),
+        ("head_mask", head_mask), ("pial", pial), ("white", white), ("volume", volume), ("tissues", tissues),
         ("input_coordinates", input_coordinates), ("electrodes", electrodes),
         ("electrodes_in", electrodes_in), ("montage", montage), ("landmarks", landmarks),
         ("sources", sources), *numbers.items())
@@ -426,7 +433,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
             count("vertices", part) for part in _one_or_more("vertices", vertices)],
         "edge_length": None if edge_length is None else _numbers("edge_length", edge_length),
         "min_gap": _numbers("min_gap", min_gap if isinstance(min_gap, (tuple, list)) else [min_gap]),
-        "conductivity": _numbers("conductivity", conductivity),
+        "conductivity": None if conductivity is None else _numbers("conductivity", conductivity),
         "head_shape": flag("head_shape", head_shape),
         "input_coordinates": ([input_coordinates] if isinstance(input_coordinates, str)
                               else [frame for frame in input_coordinates or () if frame]),
@@ -475,7 +482,7 @@ def _source(given: Dict[str, Any], input_coordinates: Any, affine: Any) -> _Sour
     """The input that is given. \\raises Error"""
     kind = next(name for name in ("t1", "labels", "probabilities", "ct", "surfaces")
                 if name in given)
-    source = _Source(kind, [], {}, [], [], [], [], [])
+    source = _Source(kind, [], {}, [], [], [], [], [], [])
     if kind != "surfaces":
         images = listed(kind, given[kind]) if kind == "probabilities" else [given[kind]]
         source.images.extend(_image(kind, image, affine, source) for image in images)
@@ -485,7 +492,7 @@ def _source(given: Dict[str, Any], input_coordinates: Any, affine: Any) -> _Sour
         if name in given:
             source.masks[name] = _image(name, given[name], affine, source)
     groups = [(name, meshes, _listed_surfaces(name, given[name]))
-              for name, meshes in (("surfaces", source.surfaces), ("pial", source.pial),
+              for name, meshes in (("surfaces", source.surfaces), ("pial", source.pial), ("white", source.white),
                                    ("sources", source.sources)) if name in given]
     frames = iter(stated_frames(input_coordinates,
                                 [surface for _, _, group in groups for surface in group]))
@@ -513,7 +520,7 @@ def _listed_surfaces(name: str, surfaces: Any) -> List[Any]:
 
 def _surfaces(name: str, framed: List[Tuple[Any, Optional[str]]], source: _Source) -> List[Mesh]:
     """Meshes of surfaces, each with the frame stated for it. \\raises Error"""
-    role = {"surfaces": "surface", "pial": "pial surface", "sources": "source surface"}[name]
+    role = {"surfaces": "surface", "pial": "pial surface", "white": "white surface", "sources": "source surface"}[name]
     meshes = []
     for surface, stated in framed:
         file = base_name(checked_path(name, surface)) if is_path(surface) else ""
@@ -593,7 +600,7 @@ def _tissues(value: Any) -> Dict[str, Any]:
         return {"preset": "" if value is None else word("tissues", value, PRESETS), "tissues": {}}
     if not isinstance(value, Mapping) or not set(value) <= set(TISSUES):
         raise Error(f"tissues {shown(value)}: must be one of {', '.join(PRESETS)}, or a dict of "
-                    "brain, csf, skull and scalp")
+                    "white, brain, csf, skull and scalp")
     return {"preset": "", "tissues": {
         name: [count(f"tissues, {name}", label, -2**63, 2**63 - 1)
                for label in _one_or_more(f"tissues, {name}", labels)]

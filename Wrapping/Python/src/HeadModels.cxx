@@ -50,7 +50,7 @@ struct HeadSources {
     BemSource source = BemSource::T1;
     Volumes images;  ///< with surfaces: the one they belong to
     std::map<std::string, std::shared_ptr<ArrayVolume>> masks;  ///< by argument: "brain_mask"
-    Meshes pial, cortex;                                        ///< with t1; for sources
+    Meshes pial, white, cortex;                                 ///< with t1; for sources
     TissueLabels tissues;
     Meshes surfaces;                ///< inside out, in one frame
     std::vector<BemInput> inputs;   ///< one for each of them
@@ -179,6 +179,7 @@ HeadBoundaries boundariesOf(const HeadSources& sources, const BemModel& model,
     take("head_mask", images.headMask);
     if (!images.main.empty()) {
         images.brain.pial = cortexOf(sources.pial, images.main.front().geometry());
+        images.brain.white = cortexOf(sources.white, images.main.front().geometry());
     }
     return findBoundaries(model, images, hooks, argumentName);
 }
@@ -459,7 +460,7 @@ BemModelOptions modelOptionsOf(const py::dict& options) {
     BemModelOptions model;
     model.boundaries.innerSkullOnly = take<bool>(options, "meg");
     if (!setLayers(model, take<std::int64_t>(options, "layers"))) {
-        throw InvalidInput("layers: must be 1, 3 or 4");
+        throw InvalidInput("layers: must be 1, 3, 4 or 5");
     }
     python::take(boundaryOptions(), model.boundaries, options);
     takeNumbers(options, "min_gap", kMinGapRule,
@@ -480,7 +481,7 @@ TissueLabels tissuesOf(const py::dict& source) {
     const auto preset = take<std::string>(source, "preset");
     if (!preset.empty()) return tissuePreset(preset);
     auto lists = take<std::map<std::string, std::vector<std::int64_t>>>(source, "tissues");
-    return {lists["brain"], lists["skull"], lists["scalp"], false, lists["csf"]};
+    return {lists["brain"], lists["skull"], lists["scalp"], false, lists["csf"], lists["white"]};
 }
 
 std::vector<std::pair<const char*, BemSource>> namedSources() {
@@ -498,6 +499,7 @@ HeadSources sourcesOf(const py::dict& from) {
     sources.images = take<HeadSources::Volumes>(from, "images");
     sources.masks = take<std::map<std::string, std::shared_ptr<ArrayVolume>>>(from, "masks");
     sources.pial = take<HeadSources::Meshes>(from, "pial");
+    sources.white = take<HeadSources::Meshes>(from, "white");
     sources.cortex = take<HeadSources::Meshes>(from, "sources");
     sources.tissues = tissuesOf(from);
     sources.surfaces = take<HeadSources::Meshes>(from, "surfaces");
@@ -534,6 +536,7 @@ BemFileOptions bemFilesOf(const py::dict& from) {
     options.writesFieldTrip = take<bool>(from, "fieldtrip");
     options.writesBrainstorm = take<bool>(from, "brainstorm");
     options.writesSimNibs = take<bool>(from, "simnibs");
+    options.writesBemFmm = take<bool>(from, "bem_fmm");
     options.writesBesa = take<bool>(from, "besa");
     return options;
 }

@@ -27,7 +27,8 @@ std::string fieldTripCoordsys(CoordinateFrame frame);
 /// struct of
 ///   bnd           1 x N structs of pos (V x 3), tri (T x 3, from 1, outward), unit, coordsys
 ///   cond          S/m, of the compartment within each
-///   tissue        {'scalp', 'skull', 'csf', 'brain'}, as far as there are layers
+///   tissue        {'scalp', 'skull', 'csf', 'brain'}, as far as there are layers; of five
+///                 'gray', 'white' last
 ///   skin_surface  1: surfaces go from the outermost to the innermost
 ///   source        N
 ///   type          'openmeeg', or 'singleshell' of one surface, which FieldTrip solves as it is

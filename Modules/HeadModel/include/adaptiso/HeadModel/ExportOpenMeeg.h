@@ -17,9 +17,9 @@ namespace adaptiso {
 enum class OpenMeegUnit { Millimetres, Metres };
 
 /// The texts of a model's .geom (Domain Description 1.1, with relative names) and .cond, for one
-/// surface (domains Brain, Air), three (Brain, Skull, Skin, Air) or four (Brain, CSF, Skull, Skin,
-/// Air), from inside out. \pre 1, 3 or 4 files \throws InvalidInput otherwise;
-/// checkConductivities()
+/// surface (domains Brain, Air), three (Brain, Skull, Skin, Air), four (Brain, CSF, Skull, Skin,
+/// Air) or five (White, Gray, CSF, ...), from inside out. \pre 1, 3, 4 or 5 files \throws
+/// InvalidInput otherwise; checkConductivities()
 std::string openMeegGeometry(std::span<const std::string> triangleFiles);
 std::string openMeegConductivities(std::size_t surfaces, const ConductivityModel& model);
 

@@ -17,20 +17,25 @@
 
 namespace adaptiso {
 
-/// The boundaries of a head model, from inside out. Between brain and inner skull lies the CSF.
-enum class HeadSurface { Brain, InnerSkull, OuterSkull, OuterSkin };
-inline constexpr std::size_t kHeadSurfaceCount = 4;
+/// The boundaries of a head model, from inside out. Between brain and inner skull lies the CSF,
+/// between white matter and brain the grey matter.
+enum class HeadSurface { WhiteMatter, Brain, InnerSkull, OuterSkull, OuterSkin };
+inline constexpr std::size_t kHeadSurfaceCount = 5;
 
-/// "brain", "inner_skull", "outer_skull", "outer_skin": the names that MNE's files have.
+/// "white_matter", "brain", "inner_skull", "outer_skull", "outer_skin": the last three are the
+/// names that MNE's files have.
 std::string_view toString(HeadSurface surface);
 
-/// Surface n, from inside out, of a model of `count`: the inner skull alone (1), all but the brain
-/// (3), or all (4). \pre n < count \throws InvalidInput  another count
+/// Surface n, from inside out, of a model of `count`: the inner skull alone (1), or the outermost
+/// 3, 4 or 5. \pre n < count \throws InvalidInput  another count
 HeadSurface headSurface(std::size_t n, std::size_t count);
 
 struct BoundaryOptions {
     bool innerSkullOnly = false;  ///< MEG: one surface
-    bool withBrain = false;       ///< four surfaces; not with innerSkullOnly
+    /// Surfaces within the inner skull: 1 the brain's, 2 the white matter's as well; not with
+    /// innerSkullOnly.
+    std::size_t innerSurfaces = 0;
+    std::size_t surfaceCount() const { return innerSkullOnly ? 1 : 3 + innerSurfaces; }
 
     /// Side of the working grid's voxels, mm; 0: the image's own voxels if they are cubes of 0.7
     /// to 1.5 mm, else 1 mm.
@@ -47,8 +52,11 @@ struct BoundaryOptions {
     /// Least thickness of the CSF between brain and inner skull; the brain gives way. Real CSF is
     /// thinner where the head rests: no usual number of triangles resolves that.
     double minCsfMm = 1;
-    /// Closing (radius, mm) of the brain's own surface: sulci narrower than twice this are filled,
-    /// as edges of some mm can't follow them.
+    /// Least thickness of the grey matter between white matter and brain; the white matter gives
+    /// way. Cortex is 1 to 4.5 mm thick [Fischl2000].
+    double minGreyMm = 1;
+    /// Closing (radius, mm) of the brain's own surface, and, twice as wide, of the white matter's:
+    /// sulci narrower than twice this are filled, as edges of some mm can't follow them.
     double sulciMm = 3;
     double maxSkullMm = 20;  ///< bone farther from the inner skull (face, neck) counts as scalp
     /// Necks of the inner skull, as leaks down a foramen are, that a ball of this radius (mm) can't
@@ -64,6 +72,12 @@ struct BoundaryOptions {
     double skullHu = 300;  ///< CT: isovalue of bone
     double skinHu = -300;  ///< CT: isovalue of skin
     ProgressCallback progress{};
+
+    /// Least distance from a surface to the next one around it. \pre not the skin's
+    double minGapMm(HeadSurface inner) const {
+        return std::array{minGreyMm, minCsfMm, minSkullMm,
+                          minScalpMm}[static_cast<std::size_t>(inner)];
+    }
 };
 
 /// The solids that the surfaces of a head model bound: each one component without cavity or
@@ -110,28 +124,32 @@ struct BrainSources {
     /// Labels of FreeSurfer or FastSurfer (aseg): all but 0, CSF and what lies outside of the brain
     /// are the brain. It is the mask as well where there is none.
     std::optional<VolumeView> aseg;
-    std::vector<TriangleMesh> pial;  ///< closed surfaces of the cortex, LPS mm
+    std::vector<TriangleMesh> pial;   ///< closed surfaces of the cortex, LPS mm
+    std::vector<TriangleMesh> white;  ///< the same of the white matter
     /// Lesions of the brain (not 0), whatever their grey values: they count as brain.
     std::optional<VolumeView> lesion{};
 };
 
-/// The same, and with options.withBrain the brain's own surface: what lies within the pial surfaces
-/// and aseg's labels or, where the cortex is not told by either, what of the mask (or of the guess)
-/// is brighter than half of the brain's level, as CSF is not. Sulci narrower than 2 sulciMm are
-/// filled, and the surface keeps minCsfMm from the inner skull.
-/// \throws InvalidInput  as above; pial surfaces that enclose nothing in this head
+/// The same, and with options.innerSurfaces the brain's own surface: what lies within the pial
+/// surfaces and aseg's labels or, where the cortex is not told by either, what of the mask (or of
+/// the guess) is brighter than half of the brain's level, as CSF is not. Sulci narrower than 2
+/// sulciMm are filled, and the surface keeps minCsfMm from the inner skull. White matter: what lies
+/// within the white surfaces and aseg's labels of it, made whole as boundariesFromLabels() does.
+/// \throws InvalidInput  as above; pial or white surfaces that enclose nothing in this head; white
+///                       matter wanted without either source
 HeadBoundaries boundariesFromT1(const VolumeView& t1, const BrainSources& brain,
                                 const BoundaryOptions& options = {});
 
 /// Which labels of a segmentation belong to what. Each list is a tissue of its own: the inner
 /// skull encloses `brain`, the outer skull brain and `skull`, the skin all of them.
 struct TissueLabels {
-    std::vector<std::int64_t> brain;  ///< brain and CSF; with options.withBrain the brain alone
+    std::vector<std::int64_t> brain;  ///< brain and CSF; the rest of it where these are named apart
     std::vector<std::int64_t> skull;
     std::vector<std::int64_t> scalp;
     /// Labels not named above that are not 0 count as brain (FreeSurfer's aseg).
     bool othersAreBrain = false;
-    std::vector<std::int64_t> csf{};  ///< within the inner skull, outside of the brain
+    std::vector<std::int64_t> csf{};    ///< within the inner skull, outside of the brain
+    std::vector<std::int64_t> white{};  ///< white matter, and what counts as it; part of the brain
 };
 
 /// The programs whose labels are known: "charm", "aseg", ...
@@ -140,11 +158,12 @@ std::vector<std::string> tissuePresetNames();
 TissueLabels tissuePreset(std::string_view name);
 
 /// From a label map. Labels become parts of voxels by smoothing and interpolating each boundary's
-/// own indicator, so that surfaces are not stairs.
-/// \param headMask  on the labels' grid: what is not 0 there lies within the skin, whatever its
-/// label \throws InvalidInput  a mask on another grid; a tissue has no label in the image; labels
-/// listed for two tissues; tissues
-///                       that don't lie round each other in their order; withBrain without CSF
+/// own indicator, so that surfaces are not stairs. White matter is made one solid: folds narrower
+/// than 4 sulciMm and all within it that is shut off then (ventricles, deep grey matter) are
+/// filled; loose pieces are left out; notes give the volumes. \param headMask  on the labels' grid:
+/// what is not 0 there lies within the skin, whatever its label \throws InvalidInput  a mask on
+/// another grid; a tissue has no label in the image; labels listed for two tissues; tissues
+///                       that don't lie round each other in their order; innerSurfaces without CSF
 HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels& tissues,
                                     const BoundaryOptions& options = {},
                                     const std::optional<VolumeView>& headMask = std::nullopt);
@@ -159,10 +178,10 @@ HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,
 
 /// From a CT in Hounsfield units: skin at skinHu, bone at skullHu; the inner skull is the cavity
 /// of the bone that a ball of 18 mm radius cannot leave.
-/// \throws InvalidInput  no head, no bone, or no cavity in it; withBrain: a CT shows no cortex
+/// \throws InvalidInput  no head, no bone, or no cavity in it; innerSurfaces: a CT shows no cortex
 HeadBoundaries boundariesFromCt(const VolumeView& ct, const BoundaryOptions& options = {});
 
-/// From three or four surfaces (or the inner skull alone) that need mending: each is made a solid
+/// From three to five surfaces (or the inner skull alone) that need mending: each is made a solid
 /// again by majority of its winding along three axes, so that holes, crossings and stray pieces go.
 /// \param surfaces  as many as the options ask for, LPS mm, inside out
 /// \throws InvalidInput  another number; a surface without volume

@@ -85,7 +85,7 @@ struct HeadNote {
 
 struct PlausibilityOptions {
     bool areNested = true;      ///< they lie in each other, the innermost first
-    bool areHeadLayers = true;  ///< 1, 3 or 4 of them: headSurface()
+    bool areHeadLayers = true;  ///< as many as headSurface() knows
     UsualHead usual{};
     /// The image that they were made from, in the surfaces' frame (LPS): how much lies on its
     /// faces. Without: how much lies on one plane across an axis.

@@ -7,7 +7,7 @@
 namespace adaptiso {
 
 /// An input that helps to find boundaries in a head's image.
-enum class BoundarySource { BrainMask, HeadMask, Pial, Lesion };
+enum class BoundarySource { BrainMask, HeadMask, Pial, White, Lesion };
 
 /// A fault of such an input, not of the image itself.
 class SourceError : public InvalidInput {

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "adaptiso/Core/TriangleMesh.h"
@@ -13,20 +12,15 @@
 
 namespace adaptiso {
 
-/// SimNIBS's number of what lies within a surface of a model of `count`: 2 brain, 3 CSF, 4 skull, 5
-/// scalp.
-std::int32_t tissueNumber(HeadSurface surface, std::size_t count);
-/// "brain", "csf", "skull", "scalp"
-std::string_view tissueName(std::int32_t number);
-
-/// The layers between nested surfaces, from inside out, as meshers take them, and as regions.
+/// The layers between nested surfaces, from inside out, as meshers take them, and as regions with
+/// SimNIBS's numbers.
 /// \pre  surfaces are sound, nested, and do not touch
 MesherInput headMesherInput(std::span<const TriangleMesh> surfaces);
 std::vector<TetrahedraRegion> headRegions(std::span<const TriangleMesh> surfaces);
 
-/// All four tissues, also those that a model does not have, so that a tissue's place is its number
-/// less 2; and the conductivity of each, S/m.
-std::vector<TetrahedraRegion> allTissues();
-std::vector<double> tissueConductivities(const ConductivityModel& model);
+/// The tissues of a model of `count` surfaces: four or more, also those that it does not have, so
+/// that a tissue's place is its number less the first one's; and the conductivity of each, S/m.
+std::vector<TetrahedraRegion> allTissues(std::size_t count);
+std::vector<double> tissueConductivities(const ConductivityModel& model, std::size_t count);
 
 }  // namespace adaptiso

@@ -24,7 +24,10 @@ struct BemFileOptions {
     /// tess_*_bem.mat, in metres: in SCS where landmarks are known, else in scanner RAS.
     bool writesBrainstorm = false;
     bool writesSimNibs = false;  ///< csf.stl, bone.stl, skin.stl: scanner RAS
+    bool writesBemFmm = false;   ///< the same, tissue_index.txt and headmodel.mat
     bool writesBesa = false;     ///< head.sfp: landmarks, electrodes and the skin's points
+
+    bool writesStl() const { return writesSimNibs || writesBemFmm; }
 };
 
 /// MNE's files of surfaces.

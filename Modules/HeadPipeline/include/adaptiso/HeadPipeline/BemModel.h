@@ -55,13 +55,13 @@ struct SourceOptions {
 struct BemModelOptions {
     BoundaryOptions boundaries;  ///< layers, gaps, thicknesses, isovalues
     /// One number for all surfaces or one for each; empty: by edge length or, without that, 2,562
-    /// of each of three surfaces, and of four as many as the layers' thickness asks for, 10,000 in
+    /// of each of three surfaces, and of more as many as the layers' thickness asks for, 10,000 in
     /// all at most.
     std::vector<std::int64_t> vertices;
-    std::int64_t mostVertices = 10'000;  ///< of four layers in all, where no number is given
+    std::int64_t mostVertices = 10'000;  ///< of four or more in all, where no number is given
     std::optional<EdgeLengthRange> edgeLengthMm;
     ConductivityModel conductivities;
-    bool namesCsf = false;  ///< the conductivity of CSF is given
+    std::size_t conductivitiesGiven = 0;
     ElectrodeOptions electrodes{};
     SourceOptions sources{};
     std::string leadField{};                      ///< by whom: "mne" or "openmeeg"; empty: none
@@ -74,9 +74,7 @@ struct BemModelOptions {
         if (vertices.empty()) return std::nullopt;
         return vertices.size() == 1 ? vertices.front() : vertices[surface];
     }
-    std::size_t surfaceCount() const {
-        return boundaries.innerSkullOnly ? 1 : boundaries.withBrain ? kHeadSurfaceCount : 3;
-    }
+    std::size_t surfaceCount() const { return boundaries.surfaceCount(); }
     HeadSurface surface(std::size_t n) const { return headSurface(n, surfaceCount()); }
     bool hasSkin() const { return surfaceCount() > 1; }
 };

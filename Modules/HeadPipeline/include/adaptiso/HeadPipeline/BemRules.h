@@ -19,16 +19,17 @@ const Options<SourceOptions>& sourceOptions();
 
 inline constexpr std::int64_t kLeastBemVertices = 42, kMostBemVertices = 200'000;
 
-/// Set what is given as a list. \return false: as many values are not allowed
+/// Set what is given as a list; setLayers() comes first, with the standard conductivities of as
+/// many. \return false: as many values are not allowed
 bool setLayers(BemModelOptions& options, std::int64_t layers);
 bool setMinGaps(BemModelOptions& options, std::span<const double> gapsMm);
 bool setEdgeLengths(BemModelOptions& options, std::span<const double> lengthsMm);
 bool setConductivities(BemModelOptions& options, std::span<const double> sigmas);
 
-inline constexpr const char* kMinGapRule = "one to three numbers of mm: SKULL,SCALP,CSF";
+inline constexpr const char* kMinGapRule = "one to four numbers of mm: SKULL,SCALP,CSF,GREY";
 inline constexpr const char* kEdgeLengthRule = "two lengths in mm: MIN:MAX";
 inline constexpr const char* kConductivityRule =
-    "three or four numbers: BRAIN,[CSF,]SKULL,SCALP in S/m";
+    "three to five numbers: [WHITE,]BRAIN,[CSF,]SKULL,SCALP in S/m";
 
 /// A request for a head model, besides the model's own options.
 struct BemRequest {
