@@ -12,7 +12,7 @@ export interface ImageRows {
 }
 
 export interface BemRows extends ImageRows {
-  /** Sulci of the brain's own surface narrower than twice this are closed (a number from 0 to 30, in mm; default: 3). */ sulciMm?: number;
+  /** Sulci of the brain's own surface narrower than twice this, and folds of white matter narrower than four times this, are closed (a number from 0 to 30, in mm; default: 3). */ sulciMm?: number;
   /** Standard deviation of the Gaussian that boundaries are smoothed with (a number from 0 to 10, in mm; default: 1.5). */ smoothingMm?: number;
   /** Gaps and canals narrower than twice this are closed (a number from 0 to 30, in mm; default: 10). */ closingMm?: number;
   /** Cut off what of the inner skull a ball of this radius can't enter and that reaches more than 10 mm, as leaks down a foramen do (a number from 0 to 20, in mm; default: 8; 0: cut nothing). */ cutNecksMm?: number;
@@ -41,6 +41,8 @@ export interface LabelsRows extends ImageRows {
   /** Simplify to so many triangles in all walls together, as close to the full resolution as the method gets. */ triangles?: number;
   /** Share of the full resolution's triangles to drop (a number from 0 to 1). */ reduction?: number;
   /** Make no new angle below this, at the price of more triangles (a number from 0 to 40, in degrees; default: 0). */ minAngleDeg?: number;
+  /** Multiply the file's coordinates by this, about the origin: the file then names no frame of the scan. auto: as small as --fit needs, never larger. */ scale?: number | string;
+  /** Refuse a surface that, as it lies, is larger than this printer's bed, in mm. */ fit?: number | string;
 }
 
 export interface MendRows {
