@@ -233,10 +233,10 @@ bool CutTriangle::force(const Segment& segment, std::vector<std::array<Id, 2>> c
 /// Finds what a segment passes, and makes it an edge, or pushes its parts.
 bool CutTriangle::pass(const Segment& segment, std::vector<Segment>& stack,
                        const CrossingOf& crossingOf) {
-    const auto [from, to, line] = segment;
+    const Id from = segment.from, to = segment.to;
     const auto passPoint = [&](Id p) {
-        stack.push_back({p, to, line});
-        stack.push_back({from, p, line});
+        stack.push_back({p, to, segment.line});
+        stack.push_back({from, p, segment.line});
         return true;
     };
     // round the first point, left and then right
