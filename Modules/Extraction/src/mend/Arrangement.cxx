@@ -88,7 +88,7 @@ public:
     /// \return false where rounding leaves open how a triangle is cut
     bool cut(const std::vector<std::array<std::uint32_t, 2>>& crossing) {
         const auto pairs = withNear(crossing);
-        if (pairs.empty()) return false;
+        if (pairs.empty() || pairs.size() > kMostPairs) return false;
         for (const auto& pair : pairs) {
             for (const std::uint32_t t : pair) {
                 for (const VertexId v : input_.mesh.triangles[t]) {
@@ -110,6 +110,9 @@ public:
     Arrangement take() { return std::move(result_); }
 
 private:
+    static constexpr std::size_t kMostPairs = 10'000'000;
+    static constexpr double kParallel = 1e-9;  ///< what unit normals span, at most
+    static constexpr double kBeside = 0.01;    ///< of a triangle's size
     struct Segment {
         Id from, to;
         Line line;
@@ -139,7 +142,7 @@ private:
         };
         for (const std::uint32_t t : crossing) find(t);
         const AabbTree tree(input_.mesh);
-        for (std::size_t n = 0; n < found.size(); ++n) {
+        for (std::size_t n = 0; n < found.size() && pairs.size() <= kMostPairs; ++n) {
             const std::uint32_t t = found[n];
             BoundingBox box = boxOf(cornersAt(t));
             const Vec3 margin{near_, near_, near_};
@@ -252,26 +255,38 @@ private:
             return point;
         });
     }
-    Id threePlanes(std::array<std::uint32_t, 3> t) {
+    /// None where planes are so nearly parallel that it would lie far from the first triangle.
+    std::optional<Id> threePlanes(std::array<std::uint32_t, 3> t) {
+        const BoundingBox box = boxOf(cornersAt(t[0]));
         std::sort(t.begin(), t.end());
-        return pointOf({std::uint64_t{2} + (std::uint64_t{t[0]} << 8), t[1], t[2]}, [&] {
-            std::array<Corners, 3> c{cornersAt(t[0]), cornersAt(t[1]), cornersAt(t[2])};
-            const Vec3 from = c[0][0];
-            std::array<Vec3, 3> normal;
-            std::array<double, 3> height{};
-            for (std::size_t n = 0; n < 3; ++n) {
-                normal[n] = normalized(areaVector2(c[n][0], c[n][1], c[n][2]));
-                height[n] = dot(normal[n], c[n][0] - from);
-            }
-            const double volume = dot(normal[0], cross(normal[1], normal[2]));
-            Vec3 p = volume == 0 ? Vec3{}
-                                 : (1 / volume) * (height[0] * cross(normal[1], normal[2]) +
-                                                   height[1] * cross(normal[2], normal[0]) +
-                                                   height[2] * cross(normal[0], normal[1]));
-            p = p + from;
-            for (const Corners& of : c) keepCoordinates(of.data(), 3, p);
-            return p;
-        });
+        const std::array<std::uint64_t, 3> key{2 + (std::uint64_t{t[0]} << 8), t[1], t[2]};
+        const auto found = byKey_.find(key);
+        const Vec3 p = found == byKey_.end() ? commonPoint(t) : points_[found->second];
+        const double margin = near_ + kBeside * norm(box.size());
+        for (int axis = 0; axis < 3; ++axis) {
+            const bool isWithin =
+                p[axis] >= box.minimum[axis] - margin && p[axis] <= box.maximum[axis] + margin;
+            if (!isWithin) return std::nullopt;
+        }
+        return pointOf(key, [&] { return p; });
+    }
+    /// Of the planes of triangles; not finite where they are parallel.
+    Vec3 commonPoint(const std::array<std::uint32_t, 3>& t) const {
+        const std::array<Corners, 3> c{cornersAt(t[0]), cornersAt(t[1]), cornersAt(t[2])};
+        const Vec3 from = c[0][0];
+        std::array<Vec3, 3> normal;
+        std::array<double, 3> height{};
+        for (std::size_t n = 0; n < 3; ++n) {
+            normal[n] = normalized(areaVector2(c[n][0], c[n][1], c[n][2]));
+            height[n] = dot(normal[n], c[n][0] - from);
+        }
+        double volume = dot(normal[0], cross(normal[1], normal[2]));
+        if (std::abs(volume) < kParallel) volume = 0;
+        Vec3 p = from + (1 / volume) * (height[0] * cross(normal[1], normal[2]) +
+                                        height[1] * cross(normal[2], normal[0]) +
+                                        height[2] * cross(normal[0], normal[1]));
+        for (const Corners& of : c) keepCoordinates(of.data(), 3, p);
+        return p;
     }
 
     /// On which side of a triangle's plane a point lies; 0: near it.
@@ -524,9 +539,11 @@ private:
 std::optional<Arrangement> arrange(MendInput& mesh,
                                    const std::vector<std::array<std::uint32_t, 2>>& pairs,
                                    double nearMm) {
+    const std::size_t points = mesh.mesh.points.size();
     Arranger arranger(mesh, nearMm);
-    if (!arranger.cut(pairs)) return std::nullopt;
-    return arranger.take();
+    if (arranger.cut(pairs)) return arranger.take();
+    mesh.mesh.points.resize(points);
+    return std::nullopt;
 }
 
 }  // namespace adaptiso::detail

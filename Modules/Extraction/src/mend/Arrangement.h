@@ -37,7 +37,7 @@ struct Arrangement {
 /// \param mesh    with its edges; gets new points. Points of triangles that meet, at one place, are
 ///                one in the arrangement
 /// \param pairs   of triangles, that cross. Triangles at borders are looked at as well
-/// \return  none where rounding leaves it open how a triangle is cut
+/// \return  none where rounding leaves it open how a triangle is cut, or too many pairs lie near
 std::optional<Arrangement> arrange(MendInput& mesh,
                                    const std::vector<std::array<std::uint32_t, 2>>& pairs,
                                    double nearMm);

@@ -13,6 +13,7 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "mend/Arrangement.h"
 #include "mend/MendDistances.h"
@@ -29,11 +30,11 @@ using Numbers = std::array<Id, 3>;
 constexpr double kPartRounded = 1e-3;  ///< of the bound: points may be rounded by as much
 constexpr double kPartMoved = 0.01;    ///< of the bound, by which fans are parted
 
-/// Triangles at one place, as one.
+/// Triangles on the same corners.
 struct Face {
-    Numbers corners;       ///< as the first of those that face as most do
-    std::uint32_t number;  ///< its
-    int count = 0;         ///< of those that face so, less the others; >= 0
+    Numbers corners;       ///< in the order of the first triangle that faces as most do
+    std::uint32_t number;  ///< of that triangle
+    int count = 0;         ///< of triangles that face as it does, less the others; >= 0
 };
 
 std::vector<Face> facesOf(const std::vector<Numbers>& triangles) {
@@ -105,17 +106,20 @@ std::optional<DisjointSets> patchesOf(const std::vector<Face>& faces) {
     return patches;
 }
 
-/// Whether each face has the solid behind it and not in front. None where winding numbers are
-/// unclear.
-std::optional<std::vector<std::uint8_t>> findBorder(const Arrangement& arrangement,
-                                                    const std::vector<Face>& faces,
-                                                    const std::vector<Vec3>& points,
-                                                    DisjointSets& patches, double sizeMm) {
-    TriangleMesh all{points, {}, {}};
-    all.triangles.reserve(arrangement.triangles.size());
-    for (const auto& [a, b, c] : arrangement.triangles) all.triangles.push_back({a, b, c});
-    const AabbTree tree(all);
-    const WindingField field(all, tree);
+/// Where the solid is.
+enum class Kind : std::uint8_t {
+    Border,  ///< behind, not in front
+    Inner,   ///< on both sides
+    Outer,   ///< on neither: the surface is inside out, or lies on itself
+    Unclear  ///< rounding leaves winding numbers open
+};
+
+/// The kind of each face. None where one is unclear, or there are too many.
+/// \param before  the triangles before they were cut
+std::optional<std::vector<Kind>> kindsOf(const TriangleMesh& before, const Arrangement& arrangement,
+                                         const std::vector<Face>& faces,
+                                         const std::vector<Vec3>& points, DisjointSets& patches,
+                                         double sizeMm, double nearMm) {
     const auto cornersAt = [&](const Face& face) {
         return Corners{points[face.corners[0]], points[face.corners[1]], points[face.corners[2]]};
     };
@@ -136,48 +140,65 @@ std::optional<std::vector<std::uint8_t>> findBorder(const Arrangement& arrangeme
         numberOf.emplace(patch, ofPatch.size());
         ofPatch.push_back(of.second);
     }
-    enum class Kind : std::uint8_t { Border, Other, Unclear };
-    std::vector<Kind> kinds(ofPatch.size());
-    parallelForPieces(std::ssize(ofPatch), 16, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t n = begin; n < end; ++n) {
-            const Face& face = faces[ofPatch[n]];
-            const Corners c = cornersAt(face);
-            const double around = norm(c[1] - c[0]) + norm(c[2] - c[1]) + norm(c[0] - c[2]);
-            const double depth = std::min(1e-9 * sizeMm, 0.1 * areaOf(face) / around);
-            const Vec3 middle = 1.0 / 3 * (c[0] + c[1] + c[2]);
-            const Vec3 step = depth * normalized(areaVector2(c[0], c[1], c[2]));
-            kinds[n] = Kind::Unclear;
-            for (const double far : {2.5, 8.0}) {
-                const double front = field.at(middle + step, -1, far),
-                             behind = field.at(middle - step, -1, far);
-                const double inFront = std::round(front), inBack = std::round(behind);
-                constexpr double kClear = 0.1;
-                if (std::abs(front - inFront) > kClear || std::abs(behind - inBack) > kClear ||
-                    inBack - inFront != face.count) {
-                    continue;
+    std::vector<Kind> kinds(ofPatch.size(), Kind::Unclear);
+    /// Of patches that are unclear still: by winding numbers `depthMm` before and behind a face.
+    const auto judge = [&](const TriangleMesh& mesh, double depthMm) {
+        constexpr double kMostTriangles = 4e9;  // that are looked at
+        const auto unclear = std::count(kinds.begin(), kinds.end(), Kind::Unclear);
+        const auto most = static_cast<double>(std::min<std::size_t>(mesh.triangles.size(), 30'000));
+        if (unclear == 0 || static_cast<double>(unclear) * most > kMostTriangles) return;
+        const AabbTree tree(mesh);
+        const WindingField field(mesh, tree);
+        parallelForPieces(std::ssize(ofPatch), 16, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t n = begin; n < end; ++n) {
+                if (kinds[n] != Kind::Unclear) continue;
+                const Face& face = faces[ofPatch[n]];
+                const Corners c = cornersAt(face);
+                const double around = norm(c[1] - c[0]) + norm(c[2] - c[1]) + norm(c[0] - c[2]);
+                const double depth = std::min(depthMm, 0.1 * areaOf(face) / around);
+                const Vec3 middle = 1.0 / 3 * (c[0] + c[1] + c[2]);
+                const Vec3 step = depth * normalized(areaVector2(c[0], c[1], c[2]));
+                for (const double far : {2.5, 8.0}) {
+                    const double front = field.at(middle + step, -1, far),
+                                 behind = field.at(middle - step, -1, far);
+                    const double inFront = std::round(front), inBack = std::round(behind);
+                    constexpr double kClear = 0.1;
+                    if (std::abs(front - inFront) > kClear || std::abs(behind - inBack) > kClear ||
+                        inBack - inFront != face.count) {
+                        continue;
+                    }
+                    kinds[n] = inFront >= 1  ? Kind::Inner
+                               : inBack >= 1 ? Kind::Border
+                                             : Kind::Outer;
+                    break;
                 }
-                kinds[n] = inFront < 1 && inBack >= 1 ? Kind::Border : Kind::Other;
-                break;
             }
-        }
-    });
-    if (std::find(kinds.begin(), kinds.end(), Kind::Unclear) != kinds.end()) return std::nullopt;
-    std::vector<std::uint8_t> isBorder(faces.size());
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        const std::size_t patch = numberOf.at(patches.find(static_cast<std::int64_t>(f)));
-        isBorder[f] = kinds[patch] == Kind::Border ? 1 : 0;
+        });
+    };
+    const double depthMm = 1e-9 * sizeMm;
+    judge(before, depthMm + 8 * nearMm);  // fewer triangles, but such as lie near each other
+    if (std::find(kinds.begin(), kinds.end(), Kind::Unclear) != kinds.end()) {
+        TriangleMesh all{points, {}, {}};
+        all.triangles.reserve(arrangement.triangles.size());
+        for (const auto& [a, b, c] : arrangement.triangles) all.triangles.push_back({a, b, c});
+        judge(all, depthMm);
     }
-    return isBorder;
+    if (std::find(kinds.begin(), kinds.end(), Kind::Unclear) != kinds.end()) return std::nullopt;
+    std::vector<Kind> ofFace(faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        ofFace[f] = kinds[numberOf.at(patches.find(static_cast<std::int64_t>(f)))];
+    }
+    return ofFace;
 }
 
 /// Cuts the triangles of a closed mesh where they meet, round by round.
 class CrossingCutter {
 public:
-    CrossingCutter(const MendInput& input, double boundMm, double nearMm)
+    CrossingCutter(const MendInput& input, double sizeMm, double boundMm, double nearMm)
         : input_(input),
           bound_(boundMm),
           near_(nearMm),
-          size_(sizeOf(input.mesh)),
+          size_(sizeMm),
           firstNew_(input.mesh.points.size()),
           isChanged_(input.mesh.triangles.size()),
           isKept_(input.mesh.triangles.size()),
@@ -189,12 +210,7 @@ public:
         std::iota(origin_.begin(), origin_.end(), std::int64_t{0});
     }
 
-    static double sizeOf(const TriangleMesh& mesh) {
-        const BoundingBox box = boundingBox(mesh);
-        return std::max(norm(box.minimum), norm(box.maximum));
-    }
-
-    /// \return  nothing crosses, or what does is that little that rounding leaves
+    /// \return  it could be cut; where rounding leaves crossings, crossingPairs() counts them
     bool cut() {
         constexpr int kMostRounds = 6;
         for (int round = 0; round < kMostRounds; ++round) {
@@ -225,7 +241,8 @@ public:
         const auto movedMm = prove();
         if (!movedMm) return std::nullopt;
         statistics.movedMm += *movedMm;
-        listDropped();
+        cut_.inner = placesOf(inner_);
+        cut_.outer = placesOf(outer_);
         return std::move(cut_);
     }
 
@@ -234,31 +251,41 @@ private:
 
     /// Cuts the triangles, and keeps those that have the solid on one side.
     bool keepBorder(bool isFirst) {
+        const TriangleMesh before = cut_.mesh;
         const auto arrangement = arrange(cut_, cut_.crossingPairs, near_);
         if (!arrangement) return false;
         const std::vector<Face> faces = facesOf(arrangement->triangles);
         auto patches = patchesOf(faces);
         if (!patches) return false;
         const auto& points = cut_.mesh.points;
-        const auto isBorder = findBorder(*arrangement, faces, points, *patches, size_);
-        if (!isBorder) return false;
+        const auto kinds = kindsOf(before, *arrangement, faces, points, *patches, size_, near_);
+        if (!kinds) return false;
         std::vector<Triangle> triangles;
         std::vector<std::int64_t> origins;
+        std::vector<std::uint8_t> isSeen(before.triangles.size());
         for (std::size_t f = 0; f < faces.size(); ++f) {
             const auto& [a, b, c] = faces[f].corners;
             const std::uint32_t whole = arrangement->origin[faces[f].number];
             const std::int64_t origin = origin_[whole];
-            const bool isPart = arrangement->isCut[whole] != 0, isOfBorder = (*isBorder)[f] != 0;
-            if (isPart) isChanged_[origin] = 1;
+            const Kind kind = (*kinds)[f];
+            const bool isPart = arrangement->isCut[whole] != 0;
+            isSeen[whole] = 1;
+            if (isPart || kind != Kind::Border) isChanged_[origin] = 1;
             if (isFirst && isGiven(origin)) {
                 const Corners corners{points[a], points[b], points[c]};
-                if (!isOfBorder) dropped_.push_back(corners);
-                if (isOfBorder && isPart) kept_.push_back(corners);
-                if (isOfBorder && !isPart) isKept_[origin] = 1;
+                if (kind == Kind::Inner) inner_.push_back(corners);
+                if (kind == Kind::Outer) outer_.push_back(corners);
+                if (kind == Kind::Border && isPart) kept_.push_back(corners);
+                if (kind == Kind::Border && !isPart) isKept_[origin] = 1;
             }
-            if (!isOfBorder) continue;
+            if (kind != Kind::Border) continue;
             triangles.push_back({a, b, c});
             origins.push_back(origin);
+        }
+        for (std::size_t t = 0; t < isSeen.size() && isFirst; ++t) {  // flat, or twice there
+            if (isSeen[t] != 0 || !isGiven(static_cast<std::int64_t>(t))) continue;
+            isChanged_[t] = 1;
+            kept_.push_back(cornersOf(before, static_cast<std::int64_t>(t)));
         }
         cut_.mesh.triangles = std::move(triangles);
         origin_ = std::move(origins);
@@ -305,12 +332,16 @@ private:
         const AreaTriangles area = withoutFlatTriangles(cut_.mesh, kPartRounded * bound_);
         if (area.triangles.empty()) return;
         std::vector<std::int64_t> origins;
-        cut_.mesh.triangles.clear();
+        std::vector<Triangle> triangles;
         for (std::size_t t = 0; t < area.triangles.size(); ++t) {
-            if (area.isLeftOut[t] != 0) continue;
-            cut_.mesh.triangles.push_back(area.triangles[t]);
+            const bool isLeftOut = area.isLeftOut[t] != 0;
+            if (isLeftOut || area.triangles[t] != cut_.mesh.triangles[t])
+                isChanged_[origin_[t]] = 1;
+            if (isLeftOut) continue;
+            triangles.push_back(area.triangles[t]);
             origins.push_back(origin_[t]);
         }
+        cut_.mesh.triangles = std::move(triangles);
         origin_ = std::move(origins);
     }
 
@@ -442,7 +473,9 @@ private:
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::stable_sort(order.begin(), order.end(),
                          [&](std::size_t a, std::size_t b) { return origin_[a] < origin_[b]; });
-        std::vector<std::uint32_t> lastOf(input_.mesh.triangles.size()), becomes(origin_.size());
+        constexpr std::uint32_t kNone = ~std::uint32_t{0};
+        std::vector<std::uint32_t> lastOf(input_.mesh.triangles.size(), kNone),
+            becomes(origin_.size());
         std::vector<Triangle> sorted;
         for (const std::size_t t : order) {
             const std::int64_t origin = origin_[t];
@@ -457,8 +490,11 @@ private:
             t = becomes[t];
             if (t < s) std::swap(s, t);
         }
-        cut_.lostPairs = input_.lostPairs;
-        for (LostPair& pair : cut_.lostPairs) pair.triangle = lastOf[pair.triangle];
+        for (const LostPair& pair : input_.lostPairs) {
+            const std::uint32_t t = lastOf[pair.triangle];
+            if (t == kNone) inner_.push_back(pair.corners);
+            if (t != kNone) cut_.lostPairs.push_back({pair.corners, t});
+        }
         findEdges(cut_);
         MendStatistics found;
         judgeSurface(cut_, found);
@@ -467,37 +503,71 @@ private:
     /// How far what was kept may lie from what became of it, and the other way. What is farther is
     /// dropped. None where there is such a thing in the result.
     std::optional<double> prove() {
-        double upperMm = 0;
-        const auto farther = [&](const TriangleMesh& surface, std::vector<Corners> pieces) {
-            // a small bound first: what is proved is no nearer than it has to be
-            for (const double part : {2 * kPartRounded, 2 * kPartMoved, 8 * kPartMoved, 0.5}) {
-                if (pieces.empty()) break;
-                const NearnessProof proof(surface, part * bound_);
-                NearnessProof::Result result;
-                for (const Corners& c : pieces) {
-                    constexpr double kSmallest = 0.1;  // of the piece
-                    proof.prove(c, kSmallest * norm(boxOf(c).size()), result);
-                }
-                upperMm = std::max(upperMm, result.upperMm);
-                pieces = std::move(result.others);
-            }
-            return pieces;
-        };
+        double upperMm = 8 * near_;  // by which parts were moved as they were cut
         std::vector<Corners> changed;
         for (std::size_t t = 0; t < cut_.partOf.size(); ++t) {
-            if (cut_.partOf[t] < 0) continue;
-            changed.push_back(cornersOf(cut_.mesh, static_cast<std::int64_t>(t)));
+            const std::int64_t origin = cut_.partOf[t];
+            if (origin < 0 || !isGiven(origin)) continue;
+            const Corners part = cornersOf(cut_.mesh, static_cast<std::int64_t>(t)),
+                          whole = cornersOf(input_.mesh, origin);
+            double away = 1e-12 * size_;  // of a convex function: largest at a corner
+            for (const Vec3& p : part) {
+                const Vec3 nearest = closestPointOnTriangle(p, whole[0], whole[1], whole[2]);
+                away = std::max(away, norm(nearest - p) + 1e-12 * size_);
+            }
+            if (away <= 2 * kPartMoved * bound_) {
+                upperMm = std::max(upperMm, away);
+            } else {
+                changed.push_back(part);
+            }
         }
-        if (!farther(input_.mesh, std::move(changed)).empty()) return std::nullopt;
-        const auto lost = farther(cut_.mesh, std::move(kept_));
-        dropped_.insert(dropped_.end(), lost.begin(), lost.end());
+        if (!farther(input_.given(), changed, upperMm).empty()) return std::nullopt;
+        const auto lost = farther(cut_.given(), kept_, upperMm);
+        inner_.insert(inner_.end(), lost.begin(), lost.end());
         return upperMm;
     }
 
-    void listDropped() {
+    /// What of `pieces` can't be proved to lie within half of the bound of a surface.
+    std::vector<Corners> farther(const TriangleMesh& given, const std::vector<Corners>& pieces,
+                                 double& upperMm) const {
+        if (pieces.empty()) return {};
+        const TriangleMesh surface = withoutUnusedPoints(given);
+        constexpr double kHalf = 0.5;
+        // a small bound first: what is proved is no nearer than it has to be
+        std::vector<std::int64_t> left(pieces.size());
+        std::iota(left.begin(), left.end(), std::int64_t{0});
+        std::vector<Corners> others;
+        for (const double part : {2 * kPartRounded, 2 * kPartMoved, 8 * kPartMoved, kHalf}) {
+            const NearnessProof proof(surface, part * bound_);
+            std::vector<NearnessProof::Result> results(left.size());
+            parallelForPieces(std::ssize(left), 64, [&](std::int64_t begin, std::int64_t end) {
+                for (std::int64_t n = begin; n < end; ++n) {
+                    const Corners& c = pieces[left[n]];
+                    const double size = norm(boxOf(c).size());
+                    proof.prove(c, part < kHalf ? 0.1 * size : std::max(0.02 * size, 0.2 * bound_),
+                                results[n]);
+                }
+            });
+            std::vector<std::int64_t> next;
+            for (std::size_t n = 0; n < left.size(); ++n) {
+                const auto& result = results[n];
+                if (!result.others.empty() && part < kHalf) {
+                    next.push_back(left[n]);
+                    continue;
+                }
+                upperMm = std::max(upperMm, result.upperMm);
+                others.insert(others.end(), result.others.begin(), result.others.end());
+            }
+            left = std::move(next);
+            if (left.empty()) break;
+        }
+        return others;
+    }
+
+    static std::vector<MendedPlace> placesOf(const std::vector<Corners>& pieces) {
         TriangleMesh lost;
         PointPlaces places;
-        for (const Corners& c : dropped_) {
+        for (const Corners& c : pieces) {
             Triangle t{};
             for (std::size_t i = 0; i < 3; ++i) {
                 t[i] = places.add(c[i], static_cast<Id>(lost.points.size()));
@@ -506,7 +576,9 @@ private:
             lost.triangles.push_back(t);
         }
         const std::vector<std::uint8_t> all(lost.triangles.size(), 1);
-        for (const auto& of : connectedPlaces(lost, all)) cut_.dropped.push_back(of.first);
+        std::vector<MendedPlace> found;
+        for (const auto& of : connectedPlaces(lost, all)) found.push_back(of.first);
+        return found;
     }
 
     const MendInput& input_;
@@ -516,21 +588,23 @@ private:
     std::vector<std::uint8_t> isChanged_;  ///< of the input's triangles: cut, or a corner moved
     std::vector<std::uint8_t> isKept_;     ///< of the input's triangles: whole, in the first round
     std::vector<std::int64_t> origin_;     ///< of cut_'s triangles
-    std::vector<Corners> kept_, dropped_;  ///< of the input's triangles, as they were cut first
+    std::vector<Corners> kept_, inner_, outer_;  ///< of the input's triangles, as cut first
 };
 
 }  // namespace
 
-std::optional<MendInput> cutCrossings(const MendInput& input, MendStatistics& statistics) {
+std::optional<MendInput> cutCrossings(const MendInput& input, const BoundingBox& box,
+                                      MendStatistics& statistics) {
     const bool isClosed = std::all_of(input.edges.begin(), input.edges.end(),
                                       [](const MendInput::Edge& e) { return e.isSound; });
     if ((input.crossingPairs.empty() && isClosed) || !input.undecided.empty()) return std::nullopt;
     const double boundMm = statistics.maxErrorMm - statistics.movedMm;
-    const double sizeMm = CrossingCutter::sizeOf(input.mesh);
-    // of double precision, of planes found by some steps of it, of single precision
+    const double sizeMm = std::max(norm(box.minimum), norm(box.maximum));
+    // what near is: by double precision; for planes that are its results; by single precision
     std::optional<CrossingCutter> best;
     for (const double part : {1e-11, 1e-8, 1e-6}) {
-        CrossingCutter cutter(input, boundMm, std::min(part * sizeMm, kPartRounded * boundMm));
+        CrossingCutter cutter(input, sizeMm, boundMm,
+                              std::min(part * sizeMm, kPartRounded * boundMm));
         if (!cutter.cut() || (best && best->crossingPairs() <= cutter.crossingPairs())) continue;
         best.emplace(std::move(cutter));
         if (best->crossingPairs() == 0) break;

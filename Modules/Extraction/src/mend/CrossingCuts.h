@@ -12,7 +12,9 @@ namespace adaptiso::detail {
 ///
 /// The solid is where the winding number is at least a half. What is dropped, and how far points
 /// may have moved, is added to what was found.
+/// \param box  of the used points
 /// \return  none where triangles do not cross, or too often to be found, or the input is open
-std::optional<MendInput> cutCrossings(const MendInput& input, MendStatistics& statistics);
+std::optional<MendInput> cutCrossings(const MendInput& input, const BoundingBox& box,
+                                      MendStatistics& statistics);
 
 }  // namespace adaptiso::detail

@@ -86,7 +86,8 @@ void CutTriangle::flip(Id u, Id v, Id w, Id x) {
     put(w, u, x);
 }
 
-/// Puts p between a and b, in the triangles on both sides.
+/// Puts p between a and b, in the triangles on both sides. \return  false, and nothing is done,
+/// where one would have no area
 bool CutTriangle::splitEdge(Id p, Id a, Id b) {
     std::vector<std::array<Id, 2>> rim;
     for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
@@ -154,7 +155,7 @@ bool CutTriangle::add(Id p) {
 }
 
 bool CutTriangle::isBetterFlipped(Id u, Id v, Id w, Id x) const {
-    // of the numbers' order, so that all triangles of a plane find the same
+    // sorted by number: all triangles of a plane decide alike
     std::array<Id, 4> order{u, v, w, x};
     int swaps = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -190,8 +191,14 @@ bool CutTriangle::meet(const Segment& segment, Id a, Id b, std::vector<Segment>&
                        const CrossingOf& crossingOf) {
     const auto found = lines_.find(sideKey(a, b));
     const Line other = found->second;
-    const auto at = crossingOf(segment.line, other);
-    if (!at) return false;
+    auto at = crossingOf(segment.line, other);
+    if (!at) {  // nearly parallel lines: the end that lies nearer is on both
+        const Vec3 p = points_[segment.from], along = points_[segment.to] - p;
+        const bool isFirst =
+            squaredNorm(cross(along, points_[a] - p)) <= squaredNorm(cross(along, points_[b] - p));
+        at = isFirst ? a : b;
+        if (*at == segment.from || *at == segment.to) return false;
+    }
     if (*at != a && *at != b && (has(*at) || !splitEdge(*at, a, b))) {
         // rounding has it beside the line, which goes through it then
         lines_.erase(found);
@@ -206,18 +213,16 @@ bool CutTriangle::meet(const Segment& segment, Id a, Id b, std::vector<Segment>&
 
 /// Makes a segment an edge by flips of those that it crosses [Sloan1993].
 bool CutTriangle::force(const Segment& segment, std::vector<std::array<Id, 2>> crossed) {
-    std::size_t tries = 0;
+    std::size_t triesLeft = 100 + 4 * crossed.size() * crossed.size();
     for (std::size_t n = 0; n < crossed.size(); ++n) {
         const auto [u, v] = crossed[n];
         const Id w = across(u, v), x = across(v, u);
-        if (w == kNone || x == kNone) return false;
+        if (w == kNone || x == kNone || triesLeft-- == 0) return false;
         if (!isConvex(u, v, w, x)) {
-            if (++tries > 100 + 4 * crossed.size()) return false;
             crossed.push_back({u, v});
             continue;
         }
         flip(u, v, w, x);
-        tries = 0;
         const bool isEnd =
             w == segment.from || w == segment.to || x == segment.from || x == segment.to;
         if (isEnd) continue;
@@ -230,7 +235,7 @@ bool CutTriangle::force(const Segment& segment, std::vector<std::array<Id, 2>> c
     return true;
 }
 
-/// Finds what a segment passes, and makes it an edge, or pushes its parts.
+/// Makes a segment an edge; where it passes a point or a line, puts its parts on the stack.
 bool CutTriangle::pass(const Segment& segment, std::vector<Segment>& stack,
                        const CrossingOf& crossingOf) {
     const Id from = segment.from, to = segment.to;

@@ -31,7 +31,7 @@ public:
     // each returns false where rounded points are not where they were found to be: the triangle is
     // then of no use
     bool addOnBorder(Id p, Id from, Id to);  ///< between two neighbours on the border
-    bool add(Id p);                          ///< none if it is there
+    bool add(Id p);                          ///< anywhere; no-op where it is one already
     bool addSegment(Id from, Id to, Line line, const CrossingOf& crossingOf);
 
     /// Improves the triangles. \return all of them, ascending, as the triangle faces

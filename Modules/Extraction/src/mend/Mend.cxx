@@ -277,13 +277,13 @@ std::vector<std::uint64_t> cellsWithSurface(const MendAssembly& assembly) {
 void countOrigins(const MendAssembly& assembly, const MendInput& input,
                   MendStatistics& statistics) {
     statistics.keptTriangles = statistics.cutTriangles = 0;
-    std::int64_t last = -1;  // parts of a triangle follow each other
+    std::int64_t last = -1 - std::ssize(input.mesh.triangles);  // parts follow each other
     for (std::size_t t = 0; t < assembly.source.size(); ++t) {
         const std::int64_t origin = assembly.origin[t];
         if (origin < 0 || origin >= input.firstCap()) continue;
         const std::int64_t whole = input.partOf.empty() ? -1 : input.partOf[origin];
         const bool isCut = assembly.source[t] == MendSource::Cut || whole >= 0;
-        const std::int64_t given = whole >= 0 ? whole : origin;
+        const std::int64_t given = whole >= 0 ? whole : -1 - origin;
         if (!isCut) ++statistics.keptTriangles;
         if (isCut && given != last) ++statistics.cutTriangles;
         last = given;
@@ -435,6 +435,22 @@ TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, cons
                        " mm");
 }
 
+/// mendPrepared(), with crossing triangles cut first where that can be done.
+TriangleMesh mendCut(const TriangleMesh& mesh, const MendInput& input, const BoundingBox& box,
+                     const MendOptions& options, MendStatistics& statistics) {
+    MendStatistics found = statistics;
+    if (const auto cut = detail::cutCrossings(input, box, found)) {
+        try {
+            TriangleMesh mended = mendPrepared(mesh, *cut, box, options, found);
+            statistics = std::move(found);
+            return mended;
+        } catch (const InvalidInput&) {
+            if (cut->crossingPairs.empty()) throw;
+        }
+    }
+    return mendPrepared(mesh, input, box, options, statistics);
+}
+
 }  // namespace
 
 Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
@@ -460,10 +476,7 @@ Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
         }
     }
     try {
-        MendStatistics found = result.statistics;
-        const auto cut = detail::cutCrossings(input, found);
-        if (cut) result.statistics = found;
-        result.mesh = mendPrepared(mesh, cut ? *cut : input, box, options, result.statistics);
+        result.mesh = mendCut(mesh, input, box, options, result.statistics);
     } catch (const InvalidInput& refusal) {
         throw MendRefusal(refusal.what(), std::move(result.statistics));
     }

@@ -247,10 +247,13 @@ void proveDistances(const MendInput& input, const AabbTree& tree, const WindingF
         far.push_back({pieces[n].triangle, isInner[n] != 0, std::move(proved[n].others)});
     }
     statistics.inputToResultMm += upperMm;
-    statistics.inner = placesOf(input, far, true);
-    statistics.inner.insert(statistics.inner.end(), input.dropped.begin(), input.dropped.end());
-    std::stable_sort(statistics.inner.begin(), statistics.inner.end(), isWider);
-    statistics.thin = placesOf(input, far, false);
+    const auto withCut = [](std::vector<MendedPlace> places, const std::vector<MendedPlace>& cut) {
+        places.insert(places.end(), cut.begin(), cut.end());
+        std::stable_sort(places.begin(), places.end(), isWider);
+        return places;
+    };
+    statistics.inner = withCut(placesOf(input, far, true), input.inner);
+    statistics.thin = withCut(placesOf(input, far, false), input.outer);
 }
 
 }  // namespace adaptiso::detail

@@ -43,7 +43,8 @@ struct MendInput {
     /// Where crossing triangles were cut: of each triangle the one before, if it is a part of that;
     /// else -1. Empty: none were.
     std::vector<std::int64_t> partOf;
-    std::vector<MendedPlace> dropped;  ///< then: what lies within the solid, the widest first
+    /// Then: what was dropped, within the solid, or off its border and outside of it.
+    std::vector<MendedPlace> inner, outer;
 
     /// Triangles of walls that both went, and one of the others with a corner there.
     std::vector<LostPair> lostPairs;
