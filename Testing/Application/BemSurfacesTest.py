@@ -158,7 +158,7 @@ class Surfaces(BemTest):
     def test_good_surfaces_of_more_vertices_than_mne_likes_are_told(self):
         names = self.write(globe(60, 60, 60), globe(66, 60, 60), globe(72, 60, 60))
         done = self.bem("--surfaces", *names, "-o", "model")
-        self.assertRegex(done.stderr, "10,626 vertices in all; MNE warns above 10,000")
+        self.assertRegex(done.stderr, "10,626 vertices in all; MNE and OpenMEEG store their square")
 
     def test_a_gap_that_rounding_of_the_files_would_lessen_is_kept(self):
         # exactly the gap asked for: floats in the .surf files would fall short of it

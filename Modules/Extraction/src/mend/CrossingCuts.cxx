@@ -13,6 +13,7 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Extraction/Components.h"
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "mend/Arrangement.h"
@@ -199,6 +200,7 @@ public:
           bound_(boundMm),
           near_(nearMm),
           size_(sizeMm),
+          sheets_(labelComponents(input.mesh)),
           firstNew_(input.mesh.points.size()),
           isChanged_(input.mesh.triangles.size()),
           isKept_(input.mesh.triangles.size()),
@@ -247,6 +249,14 @@ public:
     }
 
 private:
+    struct Dropped {
+        Corners corners;
+        std::int64_t sheet;
+    };
+
+    std::int64_t sheetOf(std::int64_t origin) const {
+        return sheets_.ofVertex[input_.mesh.triangles[origin][0]];
+    }
     bool isGiven(std::int64_t origin) const { return origin < input_.firstCap(); }
 
     /// Cuts the triangles, and keeps those that have the solid on one side.
@@ -273,8 +283,9 @@ private:
             if (isPart || kind != Kind::Border) isChanged_[origin] = 1;
             if (isFirst && isGiven(origin)) {
                 const Corners corners{points[a], points[b], points[c]};
-                if (kind == Kind::Inner) inner_.push_back(corners);
-                if (kind == Kind::Outer) outer_.push_back(corners);
+                const std::int64_t sheet = sheetOf(origin);
+                if (kind == Kind::Inner) inner_.push_back({corners, sheet});
+                if (kind == Kind::Outer) outer_.push_back({corners, sheet});
                 if (kind == Kind::Border && isPart) kept_.push_back(corners);
                 if (kind == Kind::Border && !isPart) isKept_[origin] = 1;
             }
@@ -492,7 +503,7 @@ private:
         }
         for (const LostPair& pair : input_.lostPairs) {
             const std::uint32_t t = lastOf[pair.triangle];
-            if (t == kNone) inner_.push_back(pair.corners);
+            if (t == kNone) inner_.push_back({pair.corners, sheetOf(pair.triangle)});
             if (t != kNone) cut_.lostPairs.push_back({pair.corners, t});
         }
         findEdges(cut_);
@@ -522,8 +533,9 @@ private:
             }
         }
         if (!farther(input_.given(), changed, upperMm).empty()) return std::nullopt;
-        const auto lost = farther(cut_.given(), kept_, upperMm);
-        inner_.insert(inner_.end(), lost.begin(), lost.end());
+        for (const Corners& lost : farther(cut_.given(), kept_, upperMm)) {
+            inner_.push_back({lost, 0});
+        }
         return upperMm;
     }
 
@@ -564,14 +576,15 @@ private:
         return others;
     }
 
-    static std::vector<MendedPlace> placesOf(const std::vector<Corners>& pieces) {
+    static std::vector<MendedPlace> placesOf(const std::vector<Dropped>& pieces) {
         TriangleMesh lost;
-        PointPlaces places;
-        for (const Corners& c : pieces) {
+        std::map<std::int64_t, PointPlaces> places;  // of a sheet: two may meet where they are cut
+        for (const Dropped& piece : pieces) {
             Triangle t{};
             for (std::size_t i = 0; i < 3; ++i) {
-                t[i] = places.add(c[i], static_cast<Id>(lost.points.size()));
-                lost.points.push_back(c[i]);
+                const Vec3& p = piece.corners[i];
+                t[i] = places[piece.sheet].add(p, static_cast<Id>(lost.points.size()));
+                lost.points.push_back(p);
             }
             lost.triangles.push_back(t);
         }
@@ -583,12 +596,14 @@ private:
 
     const MendInput& input_;
     double bound_, near_, size_;
-    std::size_t firstNew_;  ///< points from this on are not the input's
+    ComponentLabels sheets_;  ///< of the input
+    std::size_t firstNew_;    ///< points from this on are not the input's
     MendInput cut_;
     std::vector<std::uint8_t> isChanged_;  ///< of the input's triangles: cut, or a corner moved
     std::vector<std::uint8_t> isKept_;     ///< of the input's triangles: whole, in the first round
     std::vector<std::int64_t> origin_;     ///< of cut_'s triangles
-    std::vector<Corners> kept_, inner_, outer_;  ///< of the input's triangles, as cut first
+    std::vector<Corners> kept_;            ///< of the input's triangles, as they were cut first
+    std::vector<Dropped> inner_, outer_;   ///< likewise
 };
 
 }  // namespace
