@@ -317,7 +317,8 @@ TEST(BoundariesFromLabels, RefuseTissuesInAnotherOrderThanTheyLie) {
 
 TEST(TissuePreset, NamesWhatItKnows) {
     EXPECT_EQ(tissuePreset("charm").skull, (std::vector<std::int64_t>{4, 7, 8}));
-    EXPECT_EQ(tissuePreset("headreco").brain, (std::vector<std::int64_t>{1, 2}));
+    EXPECT_EQ(tissuePreset("headreco").brain, (std::vector<std::int64_t>{2}));
+    EXPECT_EQ(tissuePreset("headreco").white, (std::vector<std::int64_t>{1}));
     EXPECT_EQ(tissuePreset("headreco").csf, (std::vector<std::int64_t>{3}));
     EXPECT_TRUE(tissuePreset("aseg").othersAreBrain);
     EXPECT_EQ(tissuePreset("totalsegmentator").skull, (std::vector<std::int64_t>{91}));
