@@ -59,6 +59,7 @@ BemFileOptions allFiles() {
     BemFileOptions options;
     options.writesGifti = options.writesVtp = options.writesFif = options.writesBrainstorm = true;
     options.writesSimNibs = options.writesBesa = options.writesFieldTrip = true;
+    options.writesBemFmm = true;
     return options;
 }
 
