@@ -1,7 +1,6 @@
-#include "Common/SurfaceChange.h"
-
 #include <gtest/gtest.h>
 
+#include "Common/SurfaceChange.h"
 #include "Support/Pages.h"
 
 namespace adaptiso {

@@ -83,8 +83,8 @@ struct CheckRules {
     std::optional<double> minWallMm;    ///< default: kDefaultMinWallMm, and not required
     std::int64_t maxPairs = 1000;       ///< of triangles that cross, to list
 
-    static constexpr double kLeastGapMm = 0.5;  // thinner than any bone of the skull
-    static constexpr double kLeastAngleDeg = 1;      // slivers that only bad remeshing leaves
+    static constexpr double kLeastGapMm = 0.5;   // thinner than any bone of the skull
+    static constexpr double kLeastAngleDeg = 1;  // slivers that only bad remeshing leaves
 
     /// Two lines of the usual nozzle of 0.4 mm, the least that guides for filament printers name.
     static constexpr double kDefaultMinWallMm = 0.8;
