@@ -75,7 +75,7 @@ struct SurfaceChangeRun : ProgramRun {
     using ProgramRun::ProgramRun;
 
     SurfaceSummary input{};
-    SurfaceSummary output{};                     ///< the result; triangles 0 if there is none
+    SurfaceSummary output{};                     ///< of the result; 0 triangles: there is none
     double roundingMm = 0;                       ///< largest move of a point by the output's digits
     std::optional<Verification> verification{};  ///< of the surface as written
     std::uintmax_t bytes = 0;                    ///< of the output

@@ -55,7 +55,7 @@ void readSources(BemRun& run);
 /// \throws FileError
 void chooseTkRas(BemRun& run);
 
-/// What is to make the lead field and is not installed, in words; empty: nothing.
+/// Names the solver of --lead-field that is not installed; empty: all is there.
 std::string missingSolver(const BemModelOptions& options);
 
 /// Has the lead field made of the model's files, in a folder of its own. Fills the model's.

@@ -196,8 +196,7 @@ void declareSurfaces(CLI::App& app, BemOptions& options) {
         },
         "Vertices of each surface, evenly spread: 642, 1281, 2562 or any number (default: 2562; "
         "with --layers 4 or 5 by the layers' thickness, 10,000 in all at most); or one number for "
-        "each "
-        "surface, inside out: N,N,N");
+        "each surface, inside out: N,N,N");
     mesh.count(
         "--most-vertices", options.model.mostVertices, 168, kHeadSurfaceCount * kMostBemVertices,
         "With --layers 4 or 5, without --vertices and --edge-length: at most N vertices in all "

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
-#include "adaptiso/Core/Buckets.h"
 
 namespace adaptiso::detail {
 namespace {
@@ -32,28 +33,30 @@ std::uint32_t numberOf(Line line) {
 /// Numbers points by their place, near ones alike.
 class NearPlaces {
 public:
-    explicit NearPlaces(double nearMm) : near_(nearMm) {}
+    explicit NearPlaces(double nearMm) : nearMm_(nearMm) {}
 
-    /// \return  the first point that was given near the place, or this one
+    /// \return  a point that was given before near the place, or this one
     Id add(const Vec3& p, Id number) {
-        Id found = number;
+        constexpr Id kNone = ~Id{0};
+        Id found = kNone;
         for (int n = 0; n < 8; ++n) {
-            const Vec3 beside{n % 2 == 0 ? near_ : -near_, n / 2 % 2 == 0 ? near_ : -near_,
-                              n / 4 == 0 ? near_ : -near_};
+            const Vec3 beside{n % 2 == 0 ? nearMm_ : -nearMm_, n / 2 % 2 == 0 ? nearMm_ : -nearMm_,
+                              n / 4 == 0 ? nearMm_ : -nearMm_};
             const auto at = cells_.find(cellOf(p + beside));
             if (at != cells_.end()) found = std::min(found, at->second);
         }
+        if (found == kNone) found = number;
         cells_.try_emplace(cellOf(p), found);
         return found;
     }
 
 private:
     std::array<std::int64_t, 3> cellOf(const Vec3& p) const {
-        const double side = 4 * near_;
+        const double side = 4 * nearMm_;
         return {std::llround(p.x / side), std::llround(p.y / side), std::llround(p.z / side)};
     }
 
-    double near_;
+    double nearMm_;
     std::map<std::array<std::int64_t, 3>, Id> cells_;
 };
 
@@ -80,7 +83,7 @@ struct Common {
 class Arranger {
 public:
     Arranger(MendInput& input, double nearMm)
-        : input_(input), points_(input.mesh.points), near_(nearMm), nearPlaces_(nearMm) {
+        : input_(input), points_(input.mesh.points), nearMm_(nearMm), nearPlaces_(nearMm) {
         byTriangle_.resize(input.mesh.triangles.size());
         onEdge_.resize(input.edges.size());
     }
@@ -92,10 +95,13 @@ public:
         for (const auto& pair : pairs) {
             for (const std::uint32_t t : pair) {
                 for (const VertexId v : input_.mesh.triangles[t]) {
-                    numberAt(points_[v], static_cast<Id>(v));
+                    const auto number = static_cast<Id>(v);
+                    const Id first = nearPlaces_.add(points_[v], number);
+                    if (first != number) becomes_[number] = first;
                 }
             }
         }
+        joinEdges();
         for (const auto& [s, t] : pairs) meet(s, t);
         for (auto& of : onEdge_) {
             std::sort(of.begin(), of.end());
@@ -122,30 +128,32 @@ private:
         std::vector<Segment> segments;
     };
 
-    /// Crossing pairs, and those of a triangle that crosses and another that lies near.
+    /// Adds the pairs of a triangle that crosses, or lies at a border, and another near it.
     std::vector<std::array<std::uint32_t, 2>> withNear(
         std::vector<std::array<std::uint32_t, 2>> pairs) const {
-        std::vector<std::uint32_t> crossing;
-        for (const auto& pair : pairs) crossing.insert(crossing.end(), pair.begin(), pair.end());
-        const Buckets<std::uint32_t> atEdge(input_.edges.size(), [&](const auto& give) {
-            for (std::uint32_t t = 0; t < input_.edgeOf.size(); ++t) {
-                for (const std::uint32_t e : input_.edgeOf[t]) give(e, t);
-            }
-        });
-        for (std::size_t e = 0; e < input_.edges.size(); ++e) {
-            if (atEdge.of(e).size() == 1) crossing.push_back(atEdge.of(e)[0]);
+        std::vector<std::uint32_t> uses(input_.edges.size());
+        for (const auto& edges : input_.edgeOf) {
+            for (const std::uint32_t e : edges) ++uses[e];
         }
         std::vector<std::uint8_t> isFound(input_.edgeOf.size());
         std::vector<std::uint32_t> found;
         const auto find = [&](std::uint32_t t) {
             if (std::exchange(isFound[t], std::uint8_t{1}) == 0) found.push_back(t);
         };
-        for (const std::uint32_t t : crossing) find(t);
+        for (const auto& [s, t] : pairs) {
+            find(s);
+            find(t);
+        }
+        for (std::uint32_t t = 0; t < input_.edgeOf.size(); ++t) {
+            for (const std::uint32_t e : input_.edgeOf[t]) {
+                if (uses[e] == 1) find(t);
+            }
+        }
         const AabbTree tree(input_.mesh);
         for (std::size_t n = 0; n < found.size() && pairs.size() <= kMostPairs; ++n) {
             const std::uint32_t t = found[n];
             BoundingBox box = boxOf(cornersAt(t));
-            const Vec3 margin{near_, near_, near_};
+            const Vec3 margin{nearMm_, nearMm_, nearMm_};
             box.minimum = box.minimum - margin;
             box.maximum = box.maximum + margin;
             tree.forEachOverlap(box, [&](std::int64_t number) {
@@ -182,20 +190,33 @@ private:
         });
     }
 
+    /// Edges between the same points, as they are numbered now, become one.
+    void joinEdges() {
+        edgeOf_ = input_.edgeOf;
+        std::unordered_set<Id> joined;
+        for (const auto& [from, to] : becomes_) {
+            joined.insert(from);
+            joined.insert(to);
+        }
+        std::map<std::array<Id, 2>, std::uint32_t> first;
+        for (auto& edges : edgeOf_) {
+            for (std::uint32_t& e : edges) {
+                const std::uint32_t a = input_.edges[e].a, b = input_.edges[e].b;
+                if (!joined.contains(a) || !joined.contains(b)) continue;
+                const Id p = placed(a), q = placed(b);
+                e = first.try_emplace({std::min(p, q), std::max(p, q)}, e).first->second;
+            }
+        }
+    }
+
     Numbers cornersOfTriangle(std::uint32_t t) {
         const auto& [a, b, c] = input_.mesh.triangles[t];
         return {placed(a), placed(b), placed(c)};
     }
-    /// The point's number at its place, where it meets others.
+    /// The number of the point, or of one that lies near.
     Id placed(VertexId v) {
         const auto found = becomes_.find(static_cast<Id>(v));
         return found == becomes_.end() ? static_cast<Id>(v) : found->second;
-    }
-    Id numberAt(const Vec3& p, Id number) {
-        const Id first = places_.add(p, number);
-        if (first != number) becomes_[number] = first;
-        nearPlaces_.add(p, first);
-        return first;
     }
     Id addPoint(const Vec3& p) {
         const Id number = static_cast<Id>(points_.size());
@@ -255,14 +276,15 @@ private:
             return point;
         });
     }
-    /// None where planes are so nearly parallel that it would lie far from the first triangle.
+    /// The common point of three planes. None if it lies off the first triangle: two planes are
+    /// nearly parallel.
     std::optional<Id> threePlanes(std::array<std::uint32_t, 3> t) {
         const BoundingBox box = boxOf(cornersAt(t[0]));
         std::sort(t.begin(), t.end());
         const std::array<std::uint64_t, 3> key{2 + (std::uint64_t{t[0]} << 8), t[1], t[2]};
         const auto found = byKey_.find(key);
         const Vec3 p = found == byKey_.end() ? commonPoint(t) : points_[found->second];
-        const double margin = near_ + kBeside * norm(box.size());
+        const double margin = nearMm_ + kBeside * norm(box.size());
         for (int axis = 0; axis < 3; ++axis) {
             const bool isWithin =
                 p[axis] >= box.minimum[axis] - margin && p[axis] <= box.maximum[axis] + margin;
@@ -270,7 +292,7 @@ private:
         }
         return pointOf(key, [&] { return p; });
     }
-    /// Of the planes of triangles; not finite where they are parallel.
+    /// The common point of the planes of three triangles; not finite if two are parallel.
     Vec3 commonPoint(const std::array<std::uint32_t, 3>& t) const {
         const std::array<Corners, 3> c{cornersAt(t[0]), cornersAt(t[1]), cornersAt(t[2])};
         const Vec3 from = c[0][0];
@@ -292,20 +314,20 @@ private:
     /// On which side of a triangle's plane a point lies; 0: near it.
     int signAt(const Corners& c, const Vec3& p) const {
         const Vec3 normal = areaVector2(c[0], c[1], c[2]);
-        if (std::abs(dot(normal, p - c[0])) <= near_ * norm(normal)) return 0;
+        if (std::abs(dot(normal, p - c[0])) <= nearMm_ * norm(normal)) return 0;
         return orient3d(c[0], c[1], c[2], p);
     }
     /// How the lines of two edges turn; 0: they pass near each other.
     int turnOf(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
         const Vec3 normal = cross(b - a, d - c);
-        if (std::abs(dot(normal, c - a)) <= near_ * norm(normal)) return 0;
+        if (std::abs(dot(normal, c - a)) <= nearMm_ * norm(normal)) return 0;
         return orient3d(a, b, c, d);
     }
     /// On which side of a line in a plane a point lies; 0: near it.
     int sideOf(const Point2& a, const Point2& b, const Point2& p) const {
         const double u = b[0] - a[0], v = b[1] - a[1];
         const double area = u * (p[1] - a[1]) - v * (p[0] - a[0]);
-        if (std::abs(area) <= near_ * std::sqrt(u * u + v * v)) return 0;
+        if (std::abs(area) <= nearMm_ * std::sqrt(u * u + v * v)) return 0;
         return orient2d(a, b, p);
     }
 
@@ -348,16 +370,11 @@ private:
                 if (side == 0) in = std::min(in, edgePart(j));
                 if (ofA[i] == ofB[j]) in = cornerPart(j);
             }
-            if (in > 2) {
-                for (std::size_t j = 0; j < 3; ++j) {
-                    if (ofA[i] == ofB[j]) in = cornerPart(j);
-                }
-            }
             if (!isOutside) add(ofA[i], cornerPart(i), in);
         }
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t k = (i + 1) % 3;
-            const std::uint32_t edge = input_.edgeOf[s][i];
+            const std::uint32_t edge = edgeOf_[s][i];
             if (sign[i] * sign[k] < 0) {
                 std::array<int, 3> turn{};
                 int least = 1, most = -1;
@@ -374,8 +391,7 @@ private:
                 if (zeros.empty()) {
                     add(edgeAndPlane(edge, t), edgePart(i), kMiddle);
                 } else if (zeros.size() == 1) {
-                    add(edgeAndEdge(edge, input_.edgeOf[t][zeros[0]]), edgePart(i),
-                        edgePart(zeros[0]));
+                    add(edgeAndEdge(edge, edgeOf_[t][zeros[0]]), edgePart(i), edgePart(zeros[0]));
                 }  // two: at the other's corner, which is found from there
             } else if (sign[i] == 0 && sign[k] == 0) {
                 for (std::size_t j = 0; j < 3; ++j) {
@@ -383,7 +399,7 @@ private:
                     const int one = sideOf(flat(a[i]), flat(a[k]), flat(b[j])),
                               other = sideOf(flat(a[i]), flat(a[k]), flat(b[(j + 1) % 3]));
                     if (from * to < 0 && one * other < 0) {
-                        add(edgeAndEdge(edge, input_.edgeOf[t][j]), edgePart(i), edgePart(j));
+                        add(edgeAndEdge(edge, edgeOf_[t][j]), edgePart(i), edgePart(j));
                     }
                 }
             }
@@ -424,7 +440,7 @@ private:
 
     void addPoint(std::uint32_t t, Id p, Part part) {
         if (part == kMiddle) byTriangle_[t].inside.push_back(p);
-        if (part >= 3 && part < kMiddle) onEdge_[input_.edgeOf[t][part - 3]].push_back(p);
+        if (part >= 3 && part < kMiddle) onEdge_[edgeOf_[t][part - 3]].push_back(p);
     }
 
     void meet(std::uint32_t s, std::uint32_t t) {
@@ -435,9 +451,7 @@ private:
             addPoint(s, of.point, of.first);
             addPoint(t, of.point, of.second);
         }
-        const Corners a = cornersAt(s), b = cornersAt(t);
-        const bool isInPlane = signAt(b, a[0]) == 0 && signAt(b, a[1]) == 0 && signAt(b, a[2]) == 0;
-        if (isInPlane) {
+        if (isInPlane(s, t)) {
             for (std::size_t i = 0; i < 3; ++i) {
                 std::vector<Common> ofA, ofB;
                 for (const Common& of : common) {
@@ -448,11 +462,11 @@ private:
                 sortAlong(ofB);
                 for (std::size_t n = 1; n < ofA.size(); ++n) {
                     addSegment(t, ofA[n - 1].point, ofA[n].point, ofA[n - 1].second, ofA[n].second,
-                               lineOfEdge(input_.edgeOf[s][i]));
+                               lineOfEdge(edgeOf_[s][i]));
                 }
                 for (std::size_t n = 1; n < ofB.size(); ++n) {
                     addSegment(s, ofB[n - 1].point, ofB[n].point, ofB[n - 1].first, ofB[n].first,
-                               lineOfEdge(input_.edgeOf[t][i]));
+                               lineOfEdge(edgeOf_[t][i]));
                 }
             }
             return;
@@ -463,10 +477,10 @@ private:
             Line ofS = lineOfPlane(s), ofT = lineOfPlane(t);
             for (std::size_t i = 0; i < 3; ++i) {
                 if (isOnEdge(p.first, i) && isOnEdge(q.first, i)) {
-                    ofS = lineOfEdge(input_.edgeOf[s][i]);
+                    ofS = lineOfEdge(edgeOf_[s][i]);
                 }
                 if (isOnEdge(p.second, i) && isOnEdge(q.second, i)) {
-                    ofT = lineOfEdge(input_.edgeOf[t][i]);
+                    ofT = lineOfEdge(edgeOf_[t][i]);
                 }
             }
             addSegment(s, p.point, q.point, p.first, q.first, ofT);
@@ -478,18 +492,21 @@ private:
         OfTriangle& of = byTriangle_[t];
         const Numbers corners = cornersOfTriangle(t);
         bool isWhole = of.inside.empty() && of.segments.empty();
-        for (const std::uint32_t e : input_.edgeOf[t]) isWhole = isWhole && onEdge_[e].empty();
-        result_.isCut.push_back(isWhole ? 0 : 1);
+        for (const std::uint32_t e : edgeOf_[t]) isWhole = isWhole && onEdge_[e].empty();
+        const bool isFlat =
+            corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+        result_.isCut.push_back(isWhole && !isFlat ? 0 : 1);
+        if (isFlat) return true;
         if (isWhole) {
             result_.triangles.push_back(corners);
             result_.origin.push_back(t);
             return true;
         }
-        CutTriangle cut(points_, corners, near_);
+        CutTriangle cut(points_, corners, nearMm_);
         for (std::size_t i = 0; i < 3; ++i) {
             const Id a = corners[i], b = corners[(i + 1) % 3];
             std::vector<std::pair<double, Id>> along;
-            for (const Id p : onEdge_[input_.edgeOf[t][i]]) {
+            for (const Id p : onEdge_[edgeOf_[t][i]]) {
                 if (p == a || p == b) continue;
                 along.emplace_back(dot(at(p) - at(a), at(b) - at(a)), p);
             }
@@ -524,11 +541,11 @@ private:
 
     MendInput& input_;
     std::vector<Vec3>& points_;
-    double near_;
+    double nearMm_;
     Arrangement result_;
-    PointPlaces places_;  ///< of the mesh's points
     NearPlaces nearPlaces_;
-    std::unordered_map<Id, Id> becomes_;                ///< of points at one place
+    std::vector<std::array<std::uint32_t, 3>> edgeOf_;  ///< of a triangle, as MendInput has them
+    std::unordered_map<Id, Id> becomes_;                ///< points that lie near another
     std::map<std::array<std::uint64_t, 3>, Id> byKey_;  ///< points by what meets there
     std::vector<OfTriangle> byTriangle_;
     std::vector<std::vector<Id>> onEdge_;  ///< points between the ends of each

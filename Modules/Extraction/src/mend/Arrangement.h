@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -12,18 +11,6 @@
 
 namespace adaptiso::detail {
 
-/// Numbers points by their place.
-class PointPlaces {
-public:
-    /// \return  the first point that was given for the place
-    CutTriangle::Id add(const Vec3& p, CutTriangle::Id number) {
-        return first_.try_emplace({p.x + 0.0, p.y + 0.0, p.z + 0.0}, number).first->second;
-    }
-
-private:
-    std::map<std::array<double, 3>, CutTriangle::Id> first_;
-};
-
 /// A mesh cut along all lines where its triangles meet [Zhou2016]: its triangles then have corners
 /// and edges in common alone.
 struct Arrangement {
@@ -32,10 +19,10 @@ struct Arrangement {
     std::vector<std::uint8_t> isCut;    ///< of the mesh's
 };
 
-/// Whether triangles meet is decided by orient3d() and orient2d(), but that what lies within
-/// `nearMm` touches. New points are rounded, so that those of different triangles may cross again.
-/// \param mesh    with its edges; gets new points. Points of triangles that meet, at one place, are
-///                one in the arrangement
+/// orient3d() and orient2d() decide whether triangles meet. What lies within `nearMm` of another
+/// touches it. New points are rounded, so that those of different triangles may cross again.
+/// \param mesh    with its edges; gets new points. In the arrangement, points that lie near each
+///                other are one
 /// \param pairs   of triangles, that cross. Triangles at borders are looked at as well
 /// \return  none where rounding leaves it open how a triangle is cut, or too many pairs lie near
 std::optional<Arrangement> arrange(MendInput& mesh,

@@ -31,6 +31,18 @@ using Numbers = std::array<Id, 3>;
 constexpr double kPartRounded = 1e-3;  ///< of the bound: points may be rounded by as much
 constexpr double kPartMoved = 0.01;    ///< of the bound, by which fans are parted
 
+/// Numbers points by their place.
+class PointPlaces {
+public:
+    /// \return  the first point that was given for the place
+    Id add(const Vec3& p, Id number) {
+        return first_.try_emplace({p.x, p.y, p.z}, number).first->second;
+    }
+
+private:
+    std::map<std::array<double, 3>, Id> first_;
+};
+
 /// Triangles on the same corners.
 struct Face {
     Numbers corners;       ///< in the order of the first triangle that faces as most do
@@ -142,7 +154,8 @@ std::optional<std::vector<Kind>> kindsOf(const TriangleMesh& before, const Arran
         ofPatch.push_back(of.second);
     }
     std::vector<Kind> kinds(ofPatch.size(), Kind::Unclear);
-    /// Of patches that are unclear still: by winding numbers `depthMm` before and behind a face.
+    /// Judges the patches that are still unclear by the winding numbers of `mesh`, `depthMm` in
+    /// front of a face and behind it.
     const auto judge = [&](const TriangleMesh& mesh, double depthMm) {
         constexpr double kMostTriangles = 4e9;  // that are looked at
         const auto unclear = std::count(kinds.begin(), kinds.end(), Kind::Unclear);
@@ -197,9 +210,9 @@ class CrossingCutter {
 public:
     CrossingCutter(const MendInput& input, double sizeMm, double boundMm, double nearMm)
         : input_(input),
-          bound_(boundMm),
-          near_(nearMm),
-          size_(sizeMm),
+          boundMm_(boundMm),
+          nearMm_(nearMm),
+          sizeMm_(sizeMm),
           sheets_(labelComponents(input.mesh)),
           firstNew_(input.mesh.points.size()),
           isChanged_(input.mesh.triangles.size()),
@@ -262,13 +275,13 @@ private:
     /// Cuts the triangles, and keeps those that have the solid on one side.
     bool keepBorder(bool isFirst) {
         const TriangleMesh before = cut_.mesh;
-        const auto arrangement = arrange(cut_, cut_.crossingPairs, near_);
+        const auto arrangement = arrange(cut_, cut_.crossingPairs, nearMm_);
         if (!arrangement) return false;
         const std::vector<Face> faces = facesOf(arrangement->triangles);
         auto patches = patchesOf(faces);
         if (!patches) return false;
         const auto& points = cut_.mesh.points;
-        const auto kinds = kindsOf(before, *arrangement, faces, points, *patches, size_, near_);
+        const auto kinds = kindsOf(before, *arrangement, faces, points, *patches, sizeMm_, nearMm_);
         if (!kinds) return false;
         std::vector<Triangle> triangles;
         std::vector<std::int64_t> origins;
@@ -322,7 +335,7 @@ private:
             Vec3& p = mesh.points[v];
             for (int axis = 0; axis < 3 && v >= first; ++axis) {
                 const double rounded = static_cast<float>(p[axis]);
-                if (std::abs(rounded - p[axis]) <= kPartRounded * bound_) p[axis] = rounded;
+                if (std::abs(rounded - p[axis]) <= kPartRounded * boundMm_) p[axis] = rounded;
             }
             becomes[v] = places.add(p, static_cast<Id>(v));
         }
@@ -330,6 +343,7 @@ private:
         for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
             Triangle t = mesh.triangles[n];
             for (VertexId& v : t) v = becomes[v];
+            if (t != mesh.triangles[n]) isChanged_[origin_[n]] = 1;
             if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
             mesh.triangles[kept] = t;
             origin_[kept++] = origin_[n];
@@ -340,7 +354,7 @@ private:
 
     /// Removes triangles that have no area by now.
     void splitFlat() {
-        const AreaTriangles area = withoutFlatTriangles(cut_.mesh, kPartRounded * bound_);
+        const AreaTriangles area = withoutFlatTriangles(cut_.mesh, kPartRounded * boundMm_);
         if (area.triangles.empty()) return;
         std::vector<std::int64_t> origins;
         std::vector<Triangle> triangles;
@@ -383,7 +397,8 @@ private:
         findEdges(cut_);
     }
 
-    /// Of triangles at edges of more than two, the one across the solid between them.
+    /// At edges of more than two triangles: by edge and triangle, the triangle on the other side of
+    /// the solid's wedge there.
     using Partners = std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>;
 
     Partners findPartners(const Buckets<std::uint32_t>& atPoint) const {
@@ -470,7 +485,7 @@ private:
                 inward += normalized(spoke);
             }
         }
-        const double length = std::min(kPartOfEdge * shortest, kPartMoved * bound_);
+        const double length = std::min(kPartOfEdge * shortest, kPartMoved * boundMm_);
         const VertexId own = std::ssize(mesh.points);
         mesh.points.push_back(apex + length * normalized(inward));
         for (const std::uint32_t t : fan) {
@@ -514,19 +529,19 @@ private:
     /// How far what was kept may lie from what became of it, and the other way. What is farther is
     /// dropped. None where there is such a thing in the result.
     std::optional<double> prove() {
-        double upperMm = 8 * near_;  // by which parts were moved as they were cut
+        double upperMm = 8 * nearMm_;  // by which parts were moved as they were cut
         std::vector<Corners> changed;
         for (std::size_t t = 0; t < cut_.partOf.size(); ++t) {
             const std::int64_t origin = cut_.partOf[t];
             if (origin < 0 || !isGiven(origin)) continue;
             const Corners part = cornersOf(cut_.mesh, static_cast<std::int64_t>(t)),
                           whole = cornersOf(input_.mesh, origin);
-            double away = 1e-12 * size_;  // of a convex function: largest at a corner
+            double away = 1e-12 * sizeMm_;  // largest at a corner, as the distance is convex
             for (const Vec3& p : part) {
                 const Vec3 nearest = closestPointOnTriangle(p, whole[0], whole[1], whole[2]);
-                away = std::max(away, norm(nearest - p) + 1e-12 * size_);
+                away = std::max(away, norm(nearest - p) + 1e-12 * sizeMm_);
             }
-            if (away <= 2 * kPartMoved * bound_) {
+            if (away <= 2 * kPartMoved * boundMm_) {
                 upperMm = std::max(upperMm, away);
             } else {
                 changed.push_back(part);
@@ -539,7 +554,8 @@ private:
         return upperMm;
     }
 
-    /// What of `pieces` can't be proved to lie within half of the bound of a surface.
+    /// The parts of `pieces` that are not proved to lie near `given`, within half of the bound.
+    /// \param upperMm  raised to the distance that is proved for the others
     std::vector<Corners> farther(const TriangleMesh& given, const std::vector<Corners>& pieces,
                                  double& upperMm) const {
         if (pieces.empty()) return {};
@@ -550,13 +566,14 @@ private:
         std::iota(left.begin(), left.end(), std::int64_t{0});
         std::vector<Corners> others;
         for (const double part : {2 * kPartRounded, 2 * kPartMoved, 8 * kPartMoved, kHalf}) {
-            const NearnessProof proof(surface, part * bound_);
+            const NearnessProof proof(surface, part * boundMm_);
             std::vector<NearnessProof::Result> results(left.size());
             parallelForPieces(std::ssize(left), 64, [&](std::int64_t begin, std::int64_t end) {
                 for (std::int64_t n = begin; n < end; ++n) {
                     const Corners& c = pieces[left[n]];
                     const double size = norm(boxOf(c).size());
-                    proof.prove(c, part < kHalf ? 0.1 * size : std::max(0.02 * size, 0.2 * bound_),
+                    proof.prove(c,
+                                part < kHalf ? 0.1 * size : std::max(0.02 * size, 0.2 * boundMm_),
                                 results[n]);
                 }
             });
@@ -595,7 +612,7 @@ private:
     }
 
     const MendInput& input_;
-    double bound_, near_, size_;
+    double boundMm_, nearMm_, sizeMm_;
     ComponentLabels sheets_;  ///< of the input
     std::size_t firstNew_;    ///< points from this on are not the input's
     MendInput cut_;

@@ -31,7 +31,7 @@ int sideOfCircle(const Point2& a, const Point2& b, const Point2& c, const Point2
 
 CutTriangle::CutTriangle(const std::vector<Vec3>& points, const std::array<Id, 3>& corners,
                          double nearMm)
-    : points_(points), near_(nearMm), last_{corners[0], corners[1]} {
+    : points_(points), nearMm_(nearMm), last_{corners[0], corners[1]} {
     const Vec3 normal = areaVector2(points[corners[0]], points[corners[1]], points[corners[2]]);
     int axis = 0;
     for (int n = 1; n < 3; ++n) {
@@ -53,7 +53,7 @@ int CutTriangle::sideOfSegment(Id from, Id to, Id p) const {
     const Point2 a = flat(from), b = flat(to), c = flat(p);
     const double u = b[0] - a[0], v = b[1] - a[1];
     const double area = u * (c[1] - a[1]) - v * (c[0] - a[0]);
-    const bool isNear = std::abs(area) <= near_ * std::sqrt(u * u + v * v);
+    const bool isNear = std::abs(area) <= nearMm_ * std::sqrt(u * u + v * v);
     return isNear && isAhead(from, to, p) && isAhead(to, from, p) ? 0 : side(from, to, p);
 }
 

@@ -67,7 +67,7 @@ private:
     bool force(const Segment& segment, std::vector<std::array<Id, 2>> crossed);
 
     const std::vector<Vec3>& points_;
-    double near_;
+    double nearMm_;
     int u_ = 0, v_ = 1;
     std::unordered_map<std::uint64_t, Id> across_;   ///< by an edge with its triangle on the left
     std::unordered_map<std::uint64_t, Line> lines_;  ///< by an edge, ends ascending

@@ -444,8 +444,7 @@ TriangleMesh mendCut(const TriangleMesh& mesh, const MendInput& input, const Bou
             TriangleMesh mended = mendPrepared(mesh, *cut, box, options, found);
             statistics = std::move(found);
             return mended;
-        } catch (const InvalidInput&) {
-            if (cut->crossingPairs.empty()) throw;
+        } catch (const InvalidInput&) {  // next: the surface as given, by the lattice alone
         }
     }
     return mendPrepared(mesh, input, box, options, statistics);

@@ -263,8 +263,54 @@ std::vector<std::uint8_t> findWalls(const std::vector<Doubled>& sets) {
     return isWall;
 }
 
+/// The parts that hang together by points, and of each whether as many triangles run one way along
+/// each of its edges as the other, by a sum: of all, and of those that are not dropped.
+struct Balance {
+    std::vector<std::int64_t> part;  ///< of each triangle
+    std::vector<std::uint8_t> hasAll, hasKept;
+};
+
+Balance balanceOf(std::size_t pointCount, const std::vector<Triangle>& triangles,
+                  const std::vector<std::uint8_t>& isDropped) {
+    DisjointSets parts(static_cast<std::int64_t>(pointCount));
+    struct HalfEdge {
+        VertexId a, b;
+        int way;
+        std::uint8_t isDropped;
+    };
+    std::vector<HalfEdge> halves;
+    halves.reserve(3 * triangles.size());
+    for (std::size_t n = 0; n < triangles.size(); ++n) {
+        const Triangle& t = triangles[n];
+        for (std::size_t i = 0; i < 3; ++i) {
+            const VertexId a = t[i], b = t[(i + 1) % 3];
+            parts.join(a, b);
+            halves.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1, isDropped[n]});
+        }
+    }
+    std::sort(halves.begin(), halves.end(), [](const HalfEdge& one, const HalfEdge& other) {
+        return std::tie(one.a, one.b) < std::tie(other.a, other.b);
+    });
+    Balance balance{
+        {}, std::vector<std::uint8_t>(pointCount, 1), std::vector<std::uint8_t>(pointCount, 1)};
+    for (std::size_t begin = 0, end; begin < halves.size(); begin = end) {
+        int all = 0, kept = 0;
+        for (end = begin; end < halves.size() && halves[end].a == halves[begin].a &&
+                          halves[end].b == halves[begin].b;
+             ++end) {
+            all += halves[end].way;
+            if (halves[end].isDropped == 0) kept += halves[end].way;
+        }
+        const std::int64_t part = parts.find(halves[begin].a);
+        if (all != 0) balance.hasAll[part] = 0;
+        if (kept != 0) balance.hasKept[part] = 0;
+    }
+    for (const Triangle& t : triangles) balance.part.push_back(parts.find(t[0]));
+    return balance;
+}
+
 /// Triangles to drop of those at one place: all but one that faces as more of them do; of walls of
-/// solids that touch all.
+/// solids that touch all. A closed part that this would open keeps its own.
 /// \param gone  gets one of each wall
 std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
                                       const std::vector<Triangle>& triangles,
@@ -272,6 +318,7 @@ std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
     const std::vector<Doubled> sets = collectDoubled(points, triangles);
     const std::vector<std::uint8_t> isWall = findWalls(sets);
     std::vector<std::uint8_t> isDropped(triangles.size(), 1);
+    std::vector<std::size_t> copies;
     for (std::size_t n = 0; n < sets.size(); ++n) {
         const Doubled& set = sets[n];
         if (isWall[n] != 0) {
@@ -280,7 +327,16 @@ std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
         }
         std::size_t keeps = 0;
         while (set.facing * set.facings[keeps] < 0) ++keeps;
+        for (std::size_t k = 0; k < set.numbers.size(); ++k) {
+            if (k != keeps) copies.push_back(set.numbers[k]);
+        }
         isDropped[set.numbers[keeps]] = 0;
+    }
+    if (copies.empty()) return isDropped;
+    const Balance balance = balanceOf(points.size(), triangles, isDropped);
+    for (const std::size_t n : copies) {
+        const std::int64_t part = balance.part[n];
+        if (balance.hasAll[part] != 0 && balance.hasKept[part] == 0) isDropped[n] = 0;
     }
     return isDropped;
 }
