@@ -10,6 +10,9 @@ import validator from "gltf-validator";
 import { arrived, balls, choicesOf, dicomSlice, ended, give, headLabels, kBrowsers, kPage, makeFolder, native, openPage, picture, press, saved,
   textOf, writeNifti } from "./support.mjs";
 
+/** By which limits of time, those of a quiet machine, are multiplied: CI tests two browsers at once, with modules made quickly. */
+const kPatience = process.env.ADAPTISO_WEB_QUICK ? 5 : 1;
+
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
 /** Files of a ZIP archive that are stored as they are. */
@@ -148,8 +151,7 @@ for (const browserName of kBrowsers) {
       }
       assert.equal(new Set(shown.map(({ text }) => text)).size, 4, JSON.stringify(shown));
       const [, seconds] = shown.map((each) => each.seconds).sort((a, b) => a - b);  // 0.1 to 0.4 on a busy machine
-      // a module made quickly, on CI's slowest machine beside another browser
-      assert.ok(seconds < (process.env.ADAPTISO_WEB_QUICK ? 3 : 1), JSON.stringify(shown));
+      assert.ok(seconds < kPatience, JSON.stringify(shown));
     });
 
     it("offers the programs' formats and presets", async () => {
@@ -303,11 +305,9 @@ for (const browserName of kBrowsers) {
     it("draws the outlines of noise without freezing", async () => {
       writeNifti(join(folder, "noise.nii"), [256, 256, 4], (i, j, k) => Math.imul(i + 256 * j + 65536 * k + 1, 2654435761) >>> 24);
       await give(page, "#scan-files", join(folder, "noise.nii"));
-      const begin = performance.now();  // a 2-D canvas took a minute
-      await page.waitForFunction(() => document.body.dataset.scan === "noise.nii"
-        && document.querySelector("#preview").dataset.isovalue === document.querySelector("#iso").value, { timeout: 60_000 });
+      await page.waitForFunction(() => document.body.dataset.scan === "noise.nii"  // a 2-D canvas took a minute
+        && document.querySelector("#preview").dataset.isovalue === document.querySelector("#iso").value, { timeout: kPatience * 30_000 });
       await picture(page, `${browserName}-noise`);
-      assert.ok(performance.now() - begin < 30_000, `${performance.now() - begin} ms`);
     });
 
     it("refuses what no memory of a page holds before it reads it", async () => {
@@ -358,7 +358,7 @@ for (const browserName of kBrowsers) {
         while (document.querySelector("#mesh .go").disabled) await new Promise((done) => setTimeout(done, 5));
         return performance.now() - begin;
       });
-      assert.ok(milliseconds < 200, `${milliseconds} ms`);
+      assert.ok(milliseconds < kPatience * 200, `${milliseconds} ms`);
       await give(page, "#scan-files", join(folder, "balls.nii"));
       await page.waitForFunction(() => document.body.dataset.scan === "balls.nii", { timeout: 120_000 });
       await press(page, "#mesh .go");
