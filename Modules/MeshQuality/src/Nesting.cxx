@@ -199,9 +199,12 @@ std::vector<std::optional<Side>> findSides(const Surface& surface, const Surface
                        ofPiece = std::max<std::int64_t>(1 << 21, 2 * kMostRayTests / pieces);
     const bool isInVain = 2 * expectedRayTests(surface, other, spokesmen) >
                           static_cast<double>(ofPiece) * static_cast<double>(pieces);
-    const std::int64_t most = isInVain ? 1 << 18 : ofPiece;
+    constexpr std::int64_t kPiecesInVain = 8;  // evenly spread, of 2^18 tests each
+    const std::int64_t most = isInVain ? 1 << 18 : ofPiece,
+                       step = isInVain ? (pieces + kPiecesInVain - 1) / kPiecesInVain : 1;
     std::vector<std::optional<Side>> sides(spokesmen.size());
     parallelForPieces(count, kVertexGrain, [&](std::int64_t begin, std::int64_t end) {
+        if (begin / kVertexGrain % step != 0) return;
         std::int64_t tests = 0;
         for (VertexId v = begin; v < end && tests <= most; ++v) {
             if (spokesmen[v] == v) sides[v] = other.inside.sideOf(surface.mesh.points[v], &tests);
