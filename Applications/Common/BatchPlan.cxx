@@ -113,15 +113,18 @@ void printReasons(std::span<const SummaryReason> reasons, const std::string& wor
 /// The command that makes the page again, without folders, which may name a patient.
 std::string commandOf(const BatchProgram& program, const BatchOptions& batch) {
     std::string words = program.name;
+    const auto lastOf = [](const fs::path& path) {
+        return baseName(path.has_filename() ? path : path.parent_path());
+    };
     const auto add = [&](const char* option, const fs::path& path) {
-        if (!path.empty()) words += std::string(" ") + option + " " + shellQuoted(baseName(path));
+        if (!path.empty()) words += std::string(" ") + option + " " + shellQuoted(lastOf(path));
     };
     if (batch.list.empty()) words += " INPUT...";
     add("--list", batch.list);
     for (const std::string& option : batch.runOptions) {
         const auto [name, value] = split(option);
         const bool isPath = value.find('/') != std::string::npos;
-        words += " " + shellQuoted(isPath ? name + "=" + baseName(value) : option);
+        words += " " + shellQuoted(isPath ? name + "=" + lastOf(value) : option);
     }
     add("--output-dir", batch.outputFolder);
     add("--summary", batch.summary);

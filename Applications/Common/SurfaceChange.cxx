@@ -93,7 +93,64 @@ PointArray transferred(const PointArray& array, const PointTransfer& transfer) {
     return taken;
 }
 
+bool isFreeSurfer(const std::filesystem::path& path) {
+    try {
+        return findMeshFormat(path).defaultFrame == CoordinateFrame::TkRas;
+    } catch (const InvalidInput&) {
+        return false;
+    }
+}
+
 }  // namespace
+
+void checkSurfaceFiles(const CLI::App& app, SurfaceChangeCommand& command,
+                       const std::string& purpose,
+                       std::vector<std::pair<const char*, std::filesystem::path>> named,
+                       bool writes) {
+    BatchOptions& batch = command.batch;
+    if (command.inputs.empty() && batch.list.empty()) {
+        throw UsageError("MESH is missing: the surface to " + purpose);
+    }
+    refuseOutputAsInput(command.inputs, command.output, batch);
+    for (const auto& [option, file] :
+         {std::pair("--output", command.output), std::pair("--report", command.report.page),
+          std::pair("--pictures", command.report.pictures)}) {
+        named.emplace_back(option, file);
+    }
+    checkPlaceholders(named, batch, command.common);
+    command.isBatch = batch.isRequested() || command.inputs.size() > 1 ||
+                      std::any_of(named.begin(), named.end(),
+                                  [](const auto& of) { return holdsName(of.second); });
+    if (!command.inputs.empty()) command.input = command.inputs.front();
+    if (!command.isBatch) return;
+    keepRunOptions(app, batch);
+    takeFolder(command.output, batch);
+    if (writes && command.output.empty() && batch.outputFolder.empty()) {
+        throw UsageError("--output is missing: a folder, or a name with {name}");
+    }
+}
+
+std::string surfaceName(const std::filesystem::path& input) {
+    const std::string name = input.filename().string();
+    if (const std::size_t two = twoPartExtension(name)) return name.substr(0, name.size() - two);
+    return isFreeSurfer(input) ? name : input.stem().string();
+}
+
+std::filesystem::path surfaceFile(const std::filesystem::path& output,
+                                  const std::filesystem::path& input, const std::string& suffix) {
+    if (output.empty()) return insertBeforeExtension(input.filename(), suffix);
+    return isFolder(output) ? output / input.filename() : output;
+}
+
+PageFrame pageFrame(const MeshFile& input) {
+    const CoordinateFrame frame = input.frame.value_or(CoordinateFrame::Ras);
+    if (!needsVolume(frame) || input.volume) {
+        return {inverse(lpsToFrame(frame, input.volume)),
+                input.frame ? "scanner RAS mm" : kUnsaidFrame};
+    }
+    return {inverse(lpsToFrame(CoordinateFrame::Ras, std::nullopt)),
+            frame == CoordinateFrame::TkRas ? "FreeSurfer's tkRAS mm" : "voxel indices"};
+}
 
 void summarize(const TriangleMesh& mesh, SurfaceSummary& summary) {
     summary.triangles = std::ssize(mesh.triangles);

@@ -8,9 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "Common/BatchOptions.h"
+#include "Common/CommonOptions.h"
 #include "Common/Json.h"
 #include "Common/PrintScale.h"
 #include "Common/ProgramRun.h"
+#include "Common/ReportOutput.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/PointTransfer.h"
@@ -69,6 +72,47 @@ struct FrameChange {
 /// \throws UsageError    the output's format holds no voxel indices
 FrameChange changeFrame(const MeshFile& input, const std::filesystem::path& file,
                         std::optional<CoordinateFrame> wanted, const std::filesystem::path& output);
+
+/// Options of a program that reads a surface and writes it changed.
+struct SurfaceChangeCommand {
+    std::vector<std::filesystem::path> inputs;      ///< as given
+    std::filesystem::path input;                    ///< the one, when it is one
+    std::vector<CoordinateFrame> inputCoordinates;  ///< as for checkInputCoordinates()
+    std::filesystem::path output;          ///< as for surfaceFile(); empty also: batch.outputFolder
+    std::optional<CoordinateFrame> frame;  ///< empty: the input's own
+    PrintScale scale;
+    BatchOptions batch;
+    bool isBatch = false;  ///< each input is a run of its own (Batch.h); by checkSurfaceFiles()
+    ReportOptions report;
+    CommonOptions common;
+};
+
+/// Checks inputs and outputs against each other, and finds what a batch needs.
+/// \param purpose  for messages: "simplify"
+/// \param named    other options that name files to read, which may hold "{name}"
+/// \param writes   surfaces are written
+/// \pre parsing is done \throws UsageError
+void checkSurfaceFiles(const CLI::App& app, SurfaceChangeCommand& command,
+                       const std::string& purpose,
+                       std::vector<std::pair<const char*, std::filesystem::path>> named,
+                       bool writes = true);
+
+/// The name that stands for {name}: "bone" of "bone.stl", "lh" of "lh.surf.gii"; "lh.pial" of
+/// itself, as FreeSurfer tells its surfaces apart by the extension.
+std::string surfaceName(const std::filesystem::path& input);
+
+/// Where the changed surface goes: `output`, or the file of the input's name in the folder that it
+/// names; by default "bone-mended.stl" of "bone.stl" in the current folder.
+std::filesystem::path surfaceFile(const std::filesystem::path& output,
+                                  const std::filesystem::path& input, const std::string& suffix);
+
+/// A frame that a page can show: LPS mm, or what is like it but for where it lies.
+struct PageFrame {
+    AffineTransform toLps;
+    std::string name;  ///< the frame in which points are reported
+};
+
+PageFrame pageFrame(const MeshFile& input);
 
 /// One run of a program that reads a surface and writes it changed.
 struct SurfaceChangeRun : ProgramRun {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <utility>
 
+#include "Common/Batch.h"
 #include "Common/CommonFrame.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
@@ -21,13 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The output, or "scan-mended.ply" of "scan.ply" in the folder that it names or the current one.
-fs::path outputPath(const MendCommand& command) {
-    const fs::path& output = command.output;
-    if (!output.empty() && !isFolder(output)) return output;
-    return output / insertBeforeExtension(command.input.filename(), "-mended");
-}
-
 /// Empty where --output names the file, else its folder: the name is made here.
 fs::path ownFolder(const MendRun& run) {
     return run.output.file == run.command.output ? fs::path() : detail::folderOf(run.output.file);
@@ -39,7 +33,7 @@ void checkOutputs(MendRun& run) {
     run.input.file = command.input;
     OutputPlan plan(std::array{command.input, command.around});
     if (!command.output.empty() || !command.isDryRun) {
-        run.output.file = outputPath(command);
+        run.output.file = surfaceFile(command.output, command.input, "-mended");
         run.output.format = &meshFormatOf(run.output.file);
         checkScale(command.scale, *run.output.format, command.frame);
         plan.add("--output", run.output.file, ownFolder(run));
@@ -183,9 +177,22 @@ void finish(TriangleMesh result, std::vector<Vec3> mended, const TriangleMesh& f
     noteScale(run.output.scale, baseName(run.output.file), run.warnings);
 }
 
+/// A run for each of many surfaces. \return, \throws as runBatch()
+int runMendBatch(const MendCommand& command) {
+    BatchProgram program{
+        "adaptiso-mend", "{file}", {"--around"}, {"--output", "--report", "--pictures"}};
+    if (command.isDryRun) {
+        program.defaultOutput.clear();
+        program.keepsRecords = false;
+    }
+    return runBatch(program, findBatchItems(command.batch, command.inputs, surfaceName),
+                    command.batch, command.common);
+}
+
 }  // namespace
 
 int runMend(const MendCommand& command) {
+    if (command.isBatch) return runMendBatch(command);
     MendRun run(command);
     checkOutputs(run);
 
@@ -201,6 +208,8 @@ int runMend(const MendCommand& command) {
     if (run.isMended() && !command.around.empty()) {
         run.stage("nest", [&] { keepAround(fixed, result, run); });
     }
+    TriangleMesh shown;
+    if (command.report.isWanted() && run.isMended()) shown = result;
     if (!run.isMended()) {
         run.verdict = {kExitCheckFailed,
                        baseName(command.input) + ": can't be mended as asked: " + run.refusal};
@@ -213,6 +222,9 @@ int runMend(const MendCommand& command) {
         finish(std::move(result), std::move(mended), fixed, input, run);
     }
     if (!run.writesSurface()) run.dropOutputs();
+    if (command.report.isWanted()) {
+        run.writePage([&] { return makeReport(run, input, std::move(shown)); });
+    }
     return run.finish(
         run.writesSurface(), [&] { return jsonReport(run); },
         [&](std::ostream& out) { printReport(out, run); });

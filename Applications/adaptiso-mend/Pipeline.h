@@ -2,29 +2,18 @@
 
 #include <filesystem>
 #include <optional>
-#include <vector>
 
-#include "Common/CommonOptions.h"
-#include "Common/PrintScale.h"
-#include "Common/ReportOutput.h"
+#include "Common/SurfaceChange.h"
 #include "adaptiso/Extraction/Mend.h"
-#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso::mender {
 
 /// Options of adaptiso-mend.
-struct MendCommand {
-    std::filesystem::path input;
-    std::vector<CoordinateFrame> inputCoordinates;  ///< as for checkInputCoordinates()
+struct MendCommand : SurfaceChangeCommand {
     MendOptions aim;
     std::filesystem::path around;  ///< a surface that the result is to lie around; may be empty
     std::optional<double> gapMm;   ///< least distance to it
     bool isDryRun = false;         ///< no surface is written, `output` is left as it is
-    std::filesystem::path output;  ///< a file, or a folder; empty: the current one
-    std::optional<CoordinateFrame> frame;  ///< empty: the input's own
-    PrintScale scale;
-    ReportOptions report;  ///< none
-    CommonOptions common;
 };
 
 /// Reads a surface, mends it, takes the values at its points along, and writes it, after what was

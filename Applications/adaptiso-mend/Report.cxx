@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Json/OptionsJson.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SurfacePipeline/MendJson.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
@@ -68,7 +70,9 @@ Json outputJson(const MendRun& run) {
 }
 
 Json resultJson(const MendRun& run) {
-    if (!run.isMended()) return adaptiso::resultJson("can't be mended as asked");
+    if (!run.isMended()) {
+        return adaptiso::resultJson("can't be mended as asked: " + run.refusal);
+    }
     std::vector<std::string> files;
     if (run.writesSurface()) files.push_back(baseName(run.output.file));
     return adaptiso::resultJson(run.isUnchanged()
@@ -117,6 +121,45 @@ void printOutput(std::ostream& out, const MendRun& run) {
     }
 }
 
+void addVerdict(const MendRun& run, Report& report) {
+    report.title = baseName(run.input.file) + " mended";
+    report.verdict = run.isMended() ? ReportVerdict::Passed : ReportVerdict::Failed;
+    if (!run.isMended()) {
+        report.headline = "Not mended: " + run.refusal + ".";
+    } else if (run.isUnchanged()) {
+        report.headline = "Sound as it was given.";
+    } else {
+        report.headline = formatCount(run.output.triangles) + " triangles of " +
+                          formatCount(run.input.triangles) + "; " +
+                          mendDistanceText(run.statistics, run.shiftMm()) + ".";
+    }
+}
+
+void addChecks(const MendRun& run, Report& report) {
+    const std::string input = baseName(run.input.file);
+    for (const std::string& fault : mendFaultTexts(run.statistics)) {
+        report.checks.push_back({input, "sound", ReportOutcome::Noted, fault});
+    }
+    if (!run.isMended()) return;
+    const std::string output = run.output.file.empty() ? "result" : baseName(run.output.file);
+    const bool isOpen = !run.statistics.leftOpen.empty();
+    report.checks.push_back(
+        {output,
+         std::string(isOpen ? "" : "closed, ") + "2-manifold, oriented, not crossing itself",
+         ReportOutcome::Passed, ""});
+    const bool isMoved = run.move.movedVertices > 0;
+    report.checks.push_back(
+        {output, "within the proved distances", ReportOutcome::Passed,
+         formatBound(std::max(run.resultToInputMm(), run.inputToResultMm())) + " mm, " +
+             (isMoved
+                  ? "with the move of up to " + formatMeasure(run.move.maximumMm)
+                  : "the bound is " + formatBound(run.statistics.maxErrorMm * run.output.scale)) +
+             " mm"});
+    if (run.command.around.empty()) return;
+    report.checks.push_back({output, "around " + baseName(run.command.around),
+                             ReportOutcome::Passed, formatMeasure(run.gapMm) + " mm at least"});
+}
+
 }  // namespace
 
 std::string jsonReport(const MendRun& run) {
@@ -131,6 +174,40 @@ void printReport(std::ostream& out, const MendRun& run) {
     printInput(out, run);
     if (run.isMended()) printOutput(out, run);
     printTimes(out, run.timer);
+}
+
+Report makeReport(const MendRun& run, const MeshFile& input, TriangleMesh shown) {
+    Report report;
+    addVerdict(run, report);
+    report.inputs.push_back(
+        {"Surface", fileText(run.input.file, *run.input.format, run.input.frame)});
+    addOptions(mendOptions(), run.command.aim, report.options);
+    addChecks(run, report);
+    report.notes = mendPlaceTexts(run.statistics);
+    const PageFrame frame = pageFrame(input);
+    report.frame = frame.name;
+    for (const auto& [what, place] : mendPlaces(run.statistics)) {
+        report.spots.push_back({what + ", " + formatMeasure(place.spanMm) + " mm wide",
+                                frame.toLps(place.middleMm), false});
+    }
+    TriangleMesh before = transformed(input.mesh, frame.toLps);
+    const auto& rows = summaryFigures();
+    ReportTable table{
+        "Surfaces", figureColumns({"Surface"}, rows), {figureCells({"read"}, rows, run.input)}};
+    if (shown.triangles.empty()) {
+        report.surfaces.push_back({baseName(run.input.file), std::move(before)});
+    } else {
+        TriangleMesh after = transformed(shown, frame.toLps);
+        std::vector<double> distances = vertexDistancesMm(after, before);
+        for (double& mm : distances) mm *= run.output.scale;
+        report.valuesAre = "from the input";
+        report.surfaces.push_back(
+            {baseName(run.output.file), std::move(after), std::move(distances)});
+        table.rows.push_back(
+            figureCells({run.writesSurface() ? "written" : "result"}, rows, run.output));
+    }
+    report.tables.push_back(std::move(table));
+    return report;
 }
 
 }  // namespace adaptiso::mender

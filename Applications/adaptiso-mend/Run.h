@@ -8,6 +8,7 @@
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Mend.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
+#include "adaptiso/Report/Report.h"
 
 namespace adaptiso::mender {
 
@@ -59,5 +60,10 @@ std::string jsonReport(const MendRun& run);
 
 /// Prints the text report.
 void printReport(std::ostream& out, const MendRun& run);
+
+/// The report that the page shows.
+/// \param input  as read
+/// \param shown  the result, in the input's frame; no triangles: it can't be mended as asked
+Report makeReport(const MendRun& run, const MeshFile& input, TriangleMesh shown);
 
 }  // namespace adaptiso::mender

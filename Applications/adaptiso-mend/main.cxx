@@ -10,8 +10,9 @@
 namespace adaptiso::mender {
 namespace {
 
+constexpr const char* kOutput = "Output";
+
 void checkCombinations(const MendCommand& command) {
-    if (command.input.empty()) throw UsageError("MESH is missing: the surface to mend");
     checkInputCoordinates(command.inputCoordinates, command.around.empty() ? 1 : 2);
     if (command.around.empty() == command.gapMm.has_value()) {
         throw UsageError("--around FIXED, --gap MM: each needs the other");
@@ -39,10 +40,13 @@ constexpr const char* kFooter = R"(Examples:
       handles are cut or filled, whichever takes the smaller disc
   adaptiso-mend skull.stl --around brain.stl --gap 2 -o around.stl
       then moved out where it lies less than 2 mm around the brain
+  adaptiso-mend *.stl --jobs 4 --skip-existing -o mended/
+      each a run of its own; a page mended/summary.html
 
-Exit codes: 0 mended, or sound already, 1 it can't be mended as asked, or a
-warning with --strict, 2 wrong usage, 3 bad input (or no memory or disk left),
-4 internal error. When it is not 0, no surface was written.)";
+Exit codes: 0 mended, or sound already, 1 it can't be mended as asked, one or
+more of many inputs failed, or a warning with --strict, 2 wrong usage, 3 bad
+input (or no memory or disk left), 4 internal error. When it is not 0, no
+surface was written (of many inputs: none of those that failed).)";
 
 Program mendProgram() {
     return {"adaptiso-mend",
@@ -52,9 +56,9 @@ Program mendProgram() {
 }
 
 void declareMendOptions(CLI::App& app, MendCommand& command) {
-    OptionGroup(app).text(
-        "MESH", "", command.input,
-        "A mesh of triangles or polygons, in any format adaptiso-mesh writes, with any faults");
+    OptionGroup(app).text("MESH", "", command.inputs,
+                          "Meshes of triangles or polygons, in any format adaptiso-mesh writes, "
+                          "with any faults; several make a batch");
     declareInputCoordinates(OptionGroup(app, "Input"), command.inputCoordinates,
                             "the mesh, given twice also of the surface of --around");
     const OptionGroup extent(app, "Extent");
@@ -64,10 +68,11 @@ void declareMendOptions(CLI::App& app, MendCommand& command) {
                 "one piece");
     extent.number("--gap", "MM", command.gapMm, {.least = 0, .isAbove = true, .unit = "mm"},
                   "Least distance to that surface (a number above 0, in mm)");
-    const OptionGroup output(app, "Output");
+    const OptionGroup output(app, kOutput);
     output.text("-o,--output", "OUT", command.output,
-                "The file to write, or a folder (default: scan-mended.ply of scan.ply in the "
-                "current one). The format follows from the extension: " +
+                "The file to write, or a folder for files of the inputs' names (default, of one "
+                "input: scan-mended.ply of scan.ply in the current folder). {name} in its "
+                "name stands for the input's. The format follows from the extension: " +
                     meshExtensions());
     declareCoordinates(output, command.frame,
                        "The points' frame in the file: scanner RAS mm, scanner LPS mm, or "
@@ -75,8 +80,13 @@ void declareMendOptions(CLI::App& app, MendCommand& command) {
                        {"ras", "lps", "tkras"});
     output.rows(scaleOptions(), command.scale);
     output.flag("--dry-run", command.isDryRun, "Report only; write no surface");
+    declareReportOptions(app, command.report, kOutput);
+    declareBatchOptions(app, command.batch);
     declareCommonOptions(app, command.common, "no surface is then written, reports are");
-    afterParsing(app, [&command] { checkCombinations(command); });
+    afterParsing(app, [&app, &command] {
+        checkSurfaceFiles(app, command, "mend", {{"--around", command.around}}, !command.isDryRun);
+        checkCombinations(command);
+    });
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ fs::path ownFolder(const SimplifyRun& run) {
 void checkOutputs(SimplifyRun& run) {
     const SimplifyCommand& command = run.command;
     run.input.file = command.input;
-    run.output.file = surfaceFile(command.output, command.input);
+    run.output.file = surfaceFile(command.output, command.input, "-simplified");
     run.output.format = &meshFormatOf(run.output.file);
     checkScale(command.scale, *run.output.format, command.frame);
     std::vector<fs::path> inputs = command.data;
@@ -226,7 +226,7 @@ int runSimplifyBatch(const SimplifyCommand& command) {
 }  // namespace
 
 int runSimplify(const SimplifyCommand& command) {
-    if (command.isBatch()) return runSimplifyBatch(command);
+    if (command.isBatch) return runSimplifyBatch(command);
     SimplifyRun run(command);
     checkOutputs(run);
 

@@ -1,41 +1,18 @@
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "Common/BatchOptions.h"
-#include "Common/CommonOptions.h"
-#include "Common/PrintScale.h"
-#include "Common/ReportOutput.h"
+#include "Common/SurfaceChange.h"
 #include "adaptiso/Extraction/Simplify.h"
-#include "adaptiso/MeshIO/CoordinateFrame.h"
 
 namespace adaptiso::simplifier {
 
 /// Options of adaptiso-simplify.
-struct SimplifyCommand {
-    std::vector<std::filesystem::path> inputs;      ///< as given
-    std::filesystem::path input;                    ///< the one, when it is one
-    std::vector<CoordinateFrame> inputCoordinates;  ///< at most one; empty: as the input says
-    std::vector<std::filesystem::path> data;        ///< files of values at its points
+struct SimplifyCommand : SurfaceChangeCommand {
+    std::vector<std::filesystem::path> data;  ///< files of values at its points
     SimplifyOptions aim;
     bool requiresSound = false;
-    std::filesystem::path output;          ///< as for surfaceFile(); empty also: batch.outputFolder
-    std::optional<CoordinateFrame> frame;  ///< empty: the input's own
-    PrintScale scale;
-    BatchOptions batch;
-    ReportOptions report;
-    CommonOptions common;
-
-    /// Whether each input is a run of its own (Batch.h).
-    bool isBatch() const {
-        return batch.isRequested() || inputs.size() > 1 || holdsName(output) ||
-               holdsName(report.page) || holdsName(report.pictures) ||
-               std::any_of(data.begin(), data.end(), holdsName);
-    }
 };
 
 /// Reads a surface and the values at its points, simplifies it, takes the values along, and writes

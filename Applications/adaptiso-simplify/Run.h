@@ -76,27 +76,10 @@ struct SimplifyRun : SurfaceChangeRun {
     }
 };
 
-/// The name that stands for {name}: "bone" of "bone.stl", "lh" of "lh.surf.gii"; "lh.pial" of
-/// itself, as FreeSurfer tells its surfaces apart by the extension.
-std::string surfaceName(const std::filesystem::path& input);
-
-/// Where the simplified surface goes: `output`, or the file of the input's name in the folder that
-/// it names; by default "bone-simplified.stl" of "bone.stl" in the current folder.
-std::filesystem::path surfaceFile(const std::filesystem::path& output,
-                                  const std::filesystem::path& input);
-
 /// Where values go: beside the surface, under their own name; where that is the file they are from,
 /// with "simplified" in its name ("lh.simplified.thickness", "a.simplified.shape.gii").
 std::filesystem::path dataFile(const std::filesystem::path& data,
                                const std::filesystem::path& surface);
-
-/// A frame that a page can show: LPS mm, or what is like it but for where it lies.
-struct PageFrame {
-    AffineTransform toLps;
-    std::string name;  ///< the frame in which points are reported
-};
-
-PageFrame pageFrame(const MeshFile& input);
 
 /// As transferred() of an array in the surface's own file.
 PointData transferred(PointData data, const PointTransfer& transfer);

@@ -25,19 +25,6 @@ void checkAim(const SimplifyOptions& aim) {
     requireOneCount(aim);
 }
 
-/// Checks options against each other.
-void checkCombinations(const SimplifyCommand& command) {
-    if (command.inputs.empty() && command.batch.list.empty()) {
-        throw UsageError("MESH is missing: the surface to simplify");
-    }
-    refuseOutputAsInput(command.inputs, command.output, command.batch);
-    checkInputCoordinates(command.inputCoordinates, 1);
-    checkAim(command.aim);
-    if (command.isBatch() && command.output.empty() && command.batch.outputFolder.empty()) {
-        throw UsageError("--output is missing: a folder, or a name with {name}");
-    }
-}
-
 void declareInput(CLI::App& app, SimplifyCommand& command) {
     const OptionGroup input(app, kInput);
     OptionGroup(app).text(
@@ -104,17 +91,11 @@ void declareSimplifyOptions(CLI::App& app, SimplifyCommand& command) {
     declareBatchOptions(app, command.batch);
     declareCommonOptions(app, command.common, "no surface is then written, reports are");
     afterParsing(app, [&app, &command] {
-        checkCombinations(command);
-        std::vector<std::pair<const char*, std::filesystem::path>> named{
-            {"--output", command.output},
-            {"--report", command.report.page},
-            {"--pictures", command.report.pictures}};
+        std::vector<std::pair<const char*, std::filesystem::path>> named;
         for (const std::filesystem::path& data : command.data) named.emplace_back("--data", data);
-        checkPlaceholders(named, command.batch, command.common);
-        if (!command.inputs.empty()) command.input = command.inputs.front();
-        if (!command.isBatch()) return;
-        keepRunOptions(app, command.batch);
-        takeFolder(command.output, command.batch);
+        checkSurfaceFiles(app, command, "simplify", std::move(named));
+        checkInputCoordinates(command.inputCoordinates, 1);
+        checkAim(command.aim);
     });
 }
 

@@ -263,7 +263,7 @@ class Refusals(MendTest):
     def test_usage_and_bad_input(self):
         self.write("ball.off", BALL)
         self.path("out").mkdir()
-        for output, file in (((), "ball-mended.off"), (("-o", "out"), "out/ball-mended.off")):
+        for output, file in (((), "ball-mended.off"), (("-o", "out"), "out/ball.off")):
             self.mend("ball.off", *output)
             self.assertTrue(self.path(file).exists(), file)
         self.stays_out(USAGE, "MESH is missing")
@@ -294,6 +294,38 @@ class Reports(MendTest):
         for key in ("triangles", "keptTriangles", "inner", "resultToInputMm"):
             self.assertEqual(planned["output"][key], done["output"][key], key)
 
+    def test_a_page_shows_what_was_changed(self):
+        points, triangles = BALL
+        self.write("holed.off", (points, triangles[1:]))
+        self.write("cup.off", cup(BALL, 20))
+        self.mend("holed.off", "-o", "out.off", "--report", "out.html", "--pictures", "pictures")
+        page = self.path("out.html").read_text()
+        for words in ("PASSED", "holed.off mended", "3 open border edges", "hole closed, ", "not crossing itself"):
+            self.assertIn(words, page)
+        self.assertTrue(list(self.path("pictures").glob("*.png")))
+        self.mend("cup.off", "--dry-run", "--report", "cup.html", code=CHECK_FAILED)
+        page = self.path("cup.html").read_text()
+        for words in ("FAILED", "Not mended: a hole near", "more than --max-hole"):
+            self.assertIn(words, page)
+
+    def test_many_are_runs_of_their_own(self):
+        for name, mesh in (("two", together(BALL, shifted(BALL, 30))), ("cup", cup(BALL, 20)), ("ball", BALL)):
+            self.write(f"{name}.off", mesh)
+        names = ("two.off", "cup.off", "ball.off", "--max-error", 1)
+        done = self.run_mend(*names, "-o", "out/")
+        self.assertEqual(done.returncode, CHECK_FAILED)
+        for line in (r"^done +two\.off: mended: \d+", r"^FAILED +cup\.off: can't be mended as asked: a hole near \(0, ",
+                     r"^done +ball\.off: is sound", "^3 inputs, 1 failed$"):
+            self.assertRegex(done.stdout, re.compile(line, re.M))
+        self.assertEqual({path.name for path in self.path("out").glob("*.off")}, {"two.off", "ball.off"})
+        self.assertIn("--output-dir out --skip-existing", self.path("out/summary.html").read_text())
+        self.mend("two.off", "--max-error", 1, "-o", "one.off")
+        self.assertEqual(self.path("one.off").read_bytes(), self.path("out/two.off").read_bytes())
+        before = self.contents()
+        self.assertEqual(self.run_mend(*names, "--dry-run").returncode, CHECK_FAILED)
+        self.assertEqual(self.contents(), before)
+        self.stays_out(USAGE, "--output is missing", *names)
+
     def test_is_the_same_whatever_the_number_of_threads(self):
         self.write("two.off", together(BALL, shifted(BALL, 30)))
         for threads in (1, 3):
@@ -320,7 +352,10 @@ class Readme(MendTest):
                               capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stdout), (0, "the hole is wider\n"), done.stderr)
         self.assertEqual(set(self.names()) - given, {"one.stl", "plan.json", "mended.vtp",
-                                                     "closed.off", "open.off", "ball.off", "around.off"})
+                                                     "closed.off", "open.off", "ball.off", "around.off",
+                                                     "mended.html", "mended"})
+        self.assertEqual({path.name for path in self.path("mended").glob("[!.]*")} & {"two.stl", "ring.off"},
+                         {"two.stl", "ring.off"})
 
 
 if __name__ == "__main__":

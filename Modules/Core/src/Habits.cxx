@@ -107,7 +107,6 @@ constexpr Habit kHabits[] = {
     {"dry-run test no-write simulate", "", "info",
      "--info prints geometry, range and isovalues, and writes nothing"},
     {"dry-run", "giant", "", "the step plan writes the plan alone"},
-    {"report qc html page pictures", "mend", "", "adaptiso-check makes pages of surfaces"},
     {"csv tsv table stats qc html report", "bids", "",
      "the level group writes quality.tsv and summary.html"},
     {"tsv table stats spreadsheet", "", "csv", ""},

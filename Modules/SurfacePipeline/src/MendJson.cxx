@@ -101,6 +101,14 @@ std::vector<std::string> mendPlaceTexts(const MendStatistics& statistics) {
     return texts;
 }
 
+std::vector<std::pair<std::string, MendedPlace>> mendPlaces(const MendStatistics& statistics) {
+    std::vector<std::pair<std::string, MendedPlace>> all;
+    for (const PlacesRow& row : kPlaces) {
+        for (const MendedPlace& place : statistics.*row.places) all.emplace_back(row.one, place);
+    }
+    return all;
+}
+
 std::string mendDistanceText(const MendStatistics& statistics, double roundingMm) {
     const bool hasDiscs = !statistics.cutHandles.empty() || !statistics.filledHandles.empty();
     const bool hasDropped = !statistics.inner.empty() || !statistics.thin.empty();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adaptiso/Extraction/Mend.h"
@@ -17,6 +18,9 @@ std::vector<std::string> mendFaultTexts(const MendStatistics& statistics);
 Json mendPlacesJson(const MendStatistics& statistics);
 /// Those that there are: "2 holes closed, 31 mm2; the widest spans 4.2 mm, around 1, 2, 3".
 std::vector<std::string> mendPlaceTexts(const MendStatistics& statistics);
+
+/// Each of them, with its kind: "hole closed".
+std::vector<std::pair<std::string, MendedPlace>> mendPlaces(const MendStatistics& statistics);
 
 /// How far the two surfaces lie apart, but for what is listed.
 std::string mendDistanceText(const MendStatistics& statistics, double roundingMm);
