@@ -33,6 +33,9 @@ export function takeStrayFiles(): void {
   });
 }
 
+/** Programs take names that begin with a dash for options. */
+const named = (files: InputFile[]): InputFile[] => files.map(({ path, data }) => ({ path: path.startsWith("-") ? `./${path}` : path, data }));
+
 /** Calls `take` with what is dropped on `zone` or chosen with one of its inputs. */
 export function takeFiles(zone: HTMLElement, take: (files: InputFile[]) => void): void {
   takers.set(zone, take);
@@ -42,13 +45,13 @@ export function takeFiles(zone: HTMLElement, take: (files: InputFile[]) => void)
     event.preventDefault();
     event.stopPropagation();
     for (const each of takers.keys()) each.classList.remove("over");
-    if (event.dataTransfer !== null) take(await filesOf(event.dataTransfer));
+    if (event.dataTransfer !== null) take(named(await filesOf(event.dataTransfer)));
   });
   if (zone === document.body) return;
   for (const input of zone.querySelectorAll<HTMLInputElement>("input[type=file]")) {
     input.addEventListener("change", () => {
       const files = [...input.files ?? []].map((file) => ({ path: file.webkitRelativePath || file.name, data: file }));
-      if (files.length > 0) take(files);
+      if (files.length > 0) take(named(files));
       input.value = "";
     });
   }
@@ -75,5 +78,6 @@ export function asInput(files: InputFile[]): { files: InputFile[]; path: string 
   return { files: files.map((file) => ({ path: `${kSlices}/${file.path}`, data: file.data })), path: kSlices };
 }
 
+/** A name for what is made of it. */
 export const stemOf = (path: string): string =>
-  path.split("/").at(-1)?.replace(/\.gz$/i, "").replace(/\.[^.]*$/, "") || "surface";
+  path.split("/").at(-1)?.replace(/\.gz$/i, "").replace(/\.[^.]*$/, "").replace(/^-+/, "") || "surface";

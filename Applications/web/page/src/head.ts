@@ -3,7 +3,7 @@ import { byId, formatCount, make, showDrawing, showGiven } from "./dom";
 import { takeFiles } from "./drop";
 import type { ImageFacts, InputFile, RunResult } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
-import { count, isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
+import { count, isChecked, kReport, number, type Page, reportOf, type Run, type Task, tellLeftOut } from "./task";
 import { exampleHead, kExampleTissues } from "./nifti";
 import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
@@ -18,8 +18,8 @@ export class HeadTab {
   private shown: ImageFacts | undefined;
 
   constructor(private readonly page: Page, private readonly scan: Scan) {
-    this.task = new Task("head", page);
-    takeFiles(byId("mask-box"), ([file]) => this.setMask(file));
+    this.task = scan.taskOf("head", page);
+    takeFiles(byId("mask-box"), (files) => { this.setMask(files[0]); tellLeftOut(this.task, files, 1); });
     byId("head-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
     byId("source").addEventListener("change", () => this.showSource());
     byId("head-example").addEventListener("click", async () => {
@@ -75,10 +75,10 @@ export class HeadTab {
     const { facts } = this.scan;
     if (facts === undefined) return this.task.refuse("Give a scan first.");
     const run = this.runOf(facts), done = await this.task.run(run);
-    if (done !== undefined) await this.show(run, done);
+    if (done !== undefined && facts === this.scan.facts) await this.show(facts, run, done);
   }
 
-  private async show(run: Run, done: RunResult): Promise<void> {
+  private async show(facts: ImageFacts, run: Run, done: RunResult): Promise<void> {
     const report = reportOf(done) as unknown as HeadReport | undefined;
     const model = done.files.filter((file) => file.path.startsWith("model/"));
     if (report?.surfaces === undefined || done.exitCode !== 0) return;
@@ -104,6 +104,7 @@ export class HeadTab {
       const opened = await this.scan.looker.mesh({ path: `shown/${surface.name}.surf`, data: file.bytes.slice() }, "adaptiso-bem");
       surfaces.push({ name: surface.name.replace("_", " "), shape: opened.shape, color: kColors[n], opacity: n + 1 === report.surfaces.length ? 0.35 : 1 });
     }
+    if (facts !== this.scan.facts) return;  // another was opened meanwhile
     this.task.addGlb("model.glb", surfaces);
     const shades = this.shown?.labels.map((_, n, { length }): Color => Array(3).fill(60 + 120 * n / Math.max(1, length - 1)) as Color) ?? [];
     if (shades.length > 0) await (await this.page.view())?.setLabelColors(shades);  // colours are the surfaces' here

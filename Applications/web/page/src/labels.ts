@@ -4,7 +4,7 @@ import { takeFiles } from "./drop";
 import type { ImageFacts, InputFile, RunResult } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
 import { exampleHead } from "./nifti";
-import { isChecked, kReport, number, type Page, reportOf, type Run, Task } from "./task";
+import { isChecked, kReport, number, type Page, reportOf, type Run, type Task, tellLeftOut } from "./task";
 import type { Color, Surface } from "./painter";
 import { zip } from "./zip";
 
@@ -21,7 +21,7 @@ export class LabelsTab {
   private shown: ImageFacts | undefined;
 
   constructor(private readonly page: Page, private readonly scan: Scan) {
-    this.task = new Task("labels", page);
+    this.task = scan.taskOf("labels", page);
     takeFiles(byId("labels-drop"), (files) => scan.take(this.task, files, true));
     scan.onChange(() => {
       if (scan.facts === undefined || scan.facts === this.shown) return;
@@ -32,7 +32,7 @@ export class LabelsTab {
     byId("labels-example").addEventListener("click", async () => {
       if (await scan.take(this.task, [{ path: "example-labels.nii", data: exampleHead(true) }], true)) await this.make();
     });
-    takeFiles(byId("names-drop"), ([file]) => this.setNames(file));
+    takeFiles(byId("names-drop"), (files) => { this.setNames(files[0]); tellLeftOut(this.task, files, 1); });
     byId("labels-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
   }
 
@@ -67,6 +67,7 @@ export class LabelsTab {
     const report = reportOf(done) as unknown as LabelsReport, { regions } = report;
     const files = done.files.filter((file) => file.path.startsWith("regions-of-map/"));
     const list = make("ul", { className: "regions" });
+    if (facts !== this.scan.facts) return;  // another was opened meanwhile
     await this.task.show(`${formatCount(regions.length)} regions, ${formatCount(report.walls.triangles)} triangles; no wall farther than `
       + `${Number(report.walls.errorBoundMm.toPrecision(3))} mm from its full resolution (proved); closed; no triangles cross`, run, done, [], [list]);
     showDrawing();
@@ -88,6 +89,7 @@ export class LabelsTab {
       box.addEventListener("change", async () => (await this.page.view())?.setShown(index, box.checked));
       list.append(make("li", {}, make("label", {}, box, swatch(color), ` ${name}: ${formatCount(Math.round(region.volumeMm3))} mm³`)));
     }
+    if (facts !== this.scan.facts) return;
     this.task.addGlb("regions.glb", surfaces);
     await (await this.page.view())?.showSurfaces(surfaces);
     document.body.dataset.shown = "regions";

@@ -7,7 +7,7 @@ import { exampleHead } from "./nifti";
 import type { ImageFacts, RunResult, Shape } from "./protocol";
 import { memoryOf, type Scan } from "./scan";
 import { countPieces } from "./shape";
-import { count, isChecked, kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
+import { count, isChecked, isNumber, kReport, number, outputsOf, type Page, reportOf, type Run, type Task } from "./task";
 import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kPreview: Color = [110, 190, 240];
@@ -31,12 +31,12 @@ export class MeshTab {
   private shown: ImageFacts | undefined;
 
   constructor(private readonly page: Page, private readonly scan: Scan) {
-    this.task = new Task("mesh", page);
+    this.task = scan.taskOf("mesh", page);
     this.histogram = new Histogram(byId<HTMLCanvasElement>("histogram"), (value) => this.setIsovalue(this.rounded(value)));
     takeFiles(byId("drop"), (files) => scan.take(this.task, files));
     byId("example").addEventListener("click", () => this.openExample());
     byId("auto").addEventListener("click", () => { if (scan.facts?.otsu != null) this.setIsovalue(this.rounded(scan.facts.otsu)); });
-    byId("iso").addEventListener("change", () => this.setIsovalue(Number(number("iso"))));
+    byId("iso").addEventListener("change", () => { if (isNumber(number("iso"))) this.setIsovalue(Number(number("iso"))); });
     byId("iso-slider").addEventListener("input", () => this.setIsovalue(this.rounded(Number(number("iso-slider")))));
     byId("mesh-form").addEventListener("submit", (event) => { event.preventDefault(); this.make(); });
     scan.onChange(() => this.opened());
@@ -124,18 +124,20 @@ export class MeshTab {
     args.push("-o", `${stemOf(scan.path)}${format}`, "--json", kReport);
     const isByCount = isChecked("by-count"), isSmoothed = Number(number("smooth")) > 0;
     return { program: "adaptiso-mesh", args, files: scan.files,
-      memoryBytes: scan.looker.crossedEdges(Number(number("iso"))).then((edges) => memoryOf.mesh(facts, edges, isByCount, isSmoothed)) };
+      memoryBytes: isNumber(number("iso")) ? scan.looker.crossedEdges(Number(number("iso")))
+        .then((edges) => memoryOf.mesh(facts, edges, isByCount, isSmoothed)) : 0 };  // the program refuses it
   }
 
   async make(): Promise<void> {
     const { facts } = this.scan;
     if (facts === undefined) return this.task.refuse("Give a scan first.");
-    const run = this.runOf(facts), smoothedBy = Number(number("smooth")), isovalue = number("iso"), done = await this.task.run(run);
+    const run = this.runOf(facts), smoothedBy = Number(number("smooth")), isovalue = number("iso"), stem = stemOf(this.scan.path);
+    const done = await this.task.run(run);
     if (done === undefined || done.exitCode !== 0) return;
-    await this.show(run, done, `the isosurface at ${isovalue} of the scan${smoothedBy > 0 ? ` smoothed by ${smoothedBy} mm` : ""}`);
+    await this.show(facts, stem, run, done, `the isosurface at ${isovalue} of the scan${smoothedBy > 0 ? ` smoothed by ${smoothedBy} mm` : ""}`);
   }
 
-  private async show(run: Run, done: RunResult, source: string): Promise<void> {
+  private async show(facts: ImageFacts, stem: string, run: Run, done: RunResult, source: string): Promise<void> {
     const [output] = outputsOf(done);
     const { surfaces: [surface] } = reportOf(done) as { surfaces: SurfaceReport[] };
     const title = [`${formatCount(surface.triangles)} triangles`,
@@ -147,11 +149,12 @@ export class MeshTab {
     showDrawing();
     this.task.addSave(`Save ${output.path}`, output.path, () => output.bytes, true);
     const report = done.files.find((file) => file.path === kReport);
-    if (report !== undefined) this.task.addSave("Save the report (JSON)", `${stemOf(this.scan.path)}.json`, () => report.bytes);
+    if (report !== undefined) this.task.addSave("Save the report (JSON)", `${stem}.json`, () => report.bytes);
     const shape: Shape = (await this.scan.looker.mesh({ path: `shown/${output.path}`, data: output.bytes.slice() }, "adaptiso-mesh")).shape;
     const view = await this.page.view();
+    if (facts !== this.scan.facts) return;  // another was opened meanwhile
     const surface3d: Surface = { name: output.path, shape, color: kColor, opacity: 1 };
-    this.task.addGlb(`${stemOf(this.scan.path)}.glb`, [surface3d]);
+    this.task.addGlb(`${stem}.glb`, [surface3d]);
     await view?.showSurfaces([surface3d]);
     document.body.dataset.shown = output.path;
   }

@@ -4,7 +4,7 @@ import { asInput, kSlices } from "./drop";
 import { Cancelled, type Looker, Refused } from "./engine";
 import { nifti } from "./nifti";
 import type { ImageFacts, InputFile, ReadOptions, Series } from "./protocol";
-import { kMostMemory, kProgramBytes, type Page, type Task, tooLarge } from "./task";
+import { kMostMemory, kProgramBytes, type Page, Task, tooLarge } from "./task";
 
 /** Size after unpacking, bytes: gzip ends with the length of its last member, modulo 4 GiB. */
 async function unpackedBytes({ data }: InputFile): Promise<number> {
@@ -26,6 +26,13 @@ export class Scan {
 
   constructor(private readonly page: Page) { this.looker = page.engine.looker(); }
 
+  private readonly tasks: Task[] = [];
+  /** A tab's that works on the image: where another one is opened, its run ends and its result goes. */
+  taskOf(id: string, page: Page): Task {
+    this.tasks.push(new Task(id, page));
+    return this.tasks[this.tasks.length - 1];
+  }
+
   /** An image is being read; the one before is there until then. */
   isReading = false;
 
@@ -40,18 +47,21 @@ export class Scan {
   /** Opens what was given on a tab; where it is refused, the tab says why and offers the choice that is needed. */
   async take(task: Task, given: InputFile[], isLabels = false, read: ReadOptions = {}): Promise<boolean> {
     task.refuse("");
-    const refused = await this.open(task, given, isLabels, read), choices: HTMLElement[] = [];
+    const refused = await this.open(given, isLabels, read), choices: HTMLElement[] = [];
     if (refused === undefined) return this.facts !== undefined;
     const { line } = refused;
-    const add = (label: string, chosen: () => ReadOptions): void => {
+    const add = (label: string, chosen: () => ReadOptions | undefined): void => {
       const button = make("button", { type: "button" }, label);
-      button.addEventListener("click", () => this.take(task, given, isLabels, chosen()));
+      button.addEventListener("click", () => {
+        const wanted = chosen();
+        if (wanted !== undefined) void this.take(task, given, isLabels, wanted);
+      });
       choices.push(button);
     };
     if (refused.volumes !== null) {
-      const box = make("input", { type: "number", min: "0", max: String(refused.volumes - 1), value: "0" });
+      const box = make("input", { type: "number", min: "0", max: String(refused.volumes - 1), value: "0", required: true });
       choices.push(make("label", {}, "Volume ", box));
-      add("Open it", () => ({ "volume-index": Number(box.value) }));
+      add("Open it", () => (box.reportValidity() ? { "volume-index": Number(box.value) } : undefined));
     } else if (refused.series.length > 0) {
       choices.push(make("p", {}, make("strong", {}, `${refused.series.length} series: choose one`)));
       for (const each of refused.series.filter(({ fault }) => fault === "")) add(rowOf(each), () => ({ series: String(each.number) }));
@@ -60,12 +70,12 @@ export class Scan {
       task.refuse("", choices);  // it is a question
       return false;
     }
-    task.refuse(line, choices);
+    task.refuse(line, choices, given.flatMap(({ path }) => path.split("/")).filter((name) => name !== ""));
     return false;
   }
 
   /** \return why not; nothing: it is open, or another was asked for meanwhile. A refused one changes nothing */
-  private async open(task: Task, given: InputFile[], isLabels: boolean, read: ReadOptions): Promise<Refused | undefined> {
+  private async open(given: InputFile[], isLabels: boolean, read: ReadOptions): Promise<Refused | undefined> {
     const turn = ++this.turn;
     this.isReading = true;
     for (const listener of this.listeners) listener();
@@ -79,8 +89,10 @@ export class Scan {
       const need = kProgramBytes + bytes;
       if (need > kMostMemory) throw new Refused(tooLarge(path, need, "adaptiso-mesh, or adaptiso-giant"), 3);
       const { facts, shades } = await this.looker.open({ files, path, read, isLabels });
-      task.cancel();
-      task.part(".result").hidden = true;
+      for (const each of this.tasks) {
+        each.cancel();
+        each.part(".result").hidden = true;
+      }
       Object.assign(this, { facts, files, path, read, isReading: false });
       this.tell(facts);
       for (const listener of this.listeners) listener();
@@ -107,7 +119,8 @@ export class Scan {
     byId("facts").textContent = `${this.path}: ${facts.format}, ${facts.geometry.sizeVoxels.join(" × ")} voxels of `
       + `${spacing.join(" × ")} mm, ${facts.orientation}, ${facts.type}, ${formatBytes(facts.bytes)}; values `
       + `${Number(facts.minimum.toPrecision(6))} to ${Number(facts.maximum.toPrecision(6))}`;
-    byId("scan-warnings").replaceChildren(...facts.warnings.map((text) => make("li", {}, text)));
+    byId("scan-warnings").replaceChildren(...facts.warnings.map((text) => make("li", {}, text,
+      ...(/--image-space/.test(text) ? [" ", make("span", { className: "hint" }, "Not possible in this page: npx adaptiso mesh ... --image-space")] : []))));
   }
 }
 

@@ -4,7 +4,7 @@ import { stemOf, takeFiles } from "./drop";
 import { type Looker, Refused } from "./engine";
 import type { InputFile, OpenedMesh, Shape } from "./protocol";
 import { insideOf } from "./shape";
-import { count, isChecked, kProgramBytes, kReport, number, outputsOf, type Page, reportOf, type Run, Task } from "./task";
+import { count, isChecked, kProgramBytes, kReport, number, outputsOf, type Page, reportOf, type Run, Task, tellLeftOut } from "./task";
 import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kOther: Color = [110, 190, 240];
@@ -23,12 +23,29 @@ class Meshes {
   constructor(id: string, readonly page: Page, most: number, make: () => Promise<void>) {
     this.task = new Task(id, page);
     this.looker = page.engine.looker();
-    takeFiles(byId(`${id}-drop`), async (given) => {
-      this.files.push(...given);
+    takeFiles(byId(`${id}-drop`), (given) => { this.taking = this.taking.then(() => this.take(given, most)); });
+    byId(`${id}-form`).addEventListener("submit", (event) => { event.preventDefault(); void this.taking.then(make); });
+  }
+  private taking = Promise.resolve();
+
+  private async take(given: InputFile[], most: number): Promise<void> {
+    const good: InputFile[] = [];
+    let refusal = "";
+    for (const file of given.slice(0, most)) {  // one that can't be read takes nothing away
+      try {
+        await this.open(file);
+        good.push(file);
+      } catch (error) {
+        refusal = this.lineOf(error);
+      }
+    }
+    if (good.length > 0) {
+      this.files.push(...good);
       this.files.splice(0, Math.max(0, this.files.length - most));
       await this.changed();
-    });
-    byId(`${id}-form`).addEventListener("submit", (event) => { event.preventDefault(); void make(); });
+    }
+    tellLeftOut(this.task, given, most);
+    if (refusal !== "") this.task.refuse(refusal, [], given.map(({ path }) => path));
   }
 
   private async changed(): Promise<void> {
@@ -53,8 +70,17 @@ class Meshes {
     return kProgramBytes + 265 * this.shown.reduce((sum, { shape }) => sum + shape.triangles.length / 3, 0);
   }
 
+  private readonly opened = new WeakMap<Blob | Uint8Array, Promise<OpenedMesh>>();
   async open(file: InputFile): Promise<OpenedMesh> {
-    return this.looker.mesh({ path: `shown/${file.path.split("/").at(-1)}`, data: await bytesOf(file) }, `adaptiso-${this.task.id}`);
+    const found = this.opened.get(file.data) ?? bytesOf(file).then((data) =>
+      this.looker.mesh({ path: `shown/${file.path.split("/").at(-1)}`, data }, `adaptiso-${this.task.id}`));
+    this.opened.set(file.data, found);
+    return found;
+  }
+
+  /** Why it can't be read. */
+  private lineOf(error: unknown): string {
+    return error instanceof Refused ? error.line.replaceAll("shown/", "") : String(error);
   }
 
   /** What can be read; the program says what can't. */
@@ -66,7 +92,7 @@ class Meshes {
         const { shape } = await this.open(file);
         surfaces.push({ name: file.path, shape, color: n % 2 === 0 ? kColor : kOther, opacity: 1, colors: paint?.(shape) });
       } catch (error) {
-        if (error instanceof Refused) this.task.refuse(error.line.replace("shown/", ""));
+        this.task.refuse(this.lineOf(error));
       }
     }
     const view = await this.page.view();
@@ -219,7 +245,9 @@ export class CompareTab {
   private async make(): Promise<void> {
     const { task, apart: files } = this.meshes;
     if (files.length !== 2) return task.refuse("Give two meshes first.");
-    const args = [...files.map((file) => file.path), "--colored", "distance.vtp", "--json", kReport];
+    let output = "distance.vtp";
+    while (files.some(({ path }) => path === output)) output = `new-${output}`;
+    const args = [...files.map((file) => file.path), "--colored", output, "--json", kReport];
     const run: Run = { program: "adaptiso-compare", args, files, memoryBytes: this.meshes.memoryBytes }, done = await task.run(run);
     if (done === undefined || done.exitCode !== 0) return;
     const { b, distances: { combined, aToB } } = reportOf(done) as { b: { volumeMm3: number | null };

@@ -26,11 +26,15 @@ export interface Run {
 
 /** Options that the page has fields or choices for. */
 const kFields = new Set(["iso", "max-error", "triangles", "smooth", "largest", "fill-cavities", "coordinates", "volume-index", "series",
-  "list-series", "brain-mask", "tissue", "preset", "layers", "vertices", "fif", "gifti", "labels", "names", "format", "file-names", "nested",
+  "list-series", "max-hole", "ball", "meg", "help", "brain-mask", "tissue", "preset", "layers", "vertices", "fif", "gifti", "labels", "names", "format", "file-names", "nested",
   "profile", "t1", "ct", "output"]);
 
-/** What to do about a program's line in a page: options that it has not, and commands of a shell. */
-function hintOf(line: string): string {
+/**
+ * What to do about a program's line in a page: options that it has not, and commands of a shell.
+ * \param names  of files, which may look like either
+ */
+export function hintOf(text: string, names: string[]): string {
+  const line = names.reduce((rest, name) => rest.replaceAll(name, ""), text);
   const missing = [...new Set([...line.matchAll(/--([a-z][a-z0-9-]+)/g)].map(([, name]) => name))].filter((name) => !kFields.has(name));
   const program = /^adaptiso-(\w+):/.exec(line)?.[1];
   return [...(missing.length === 0 || program === undefined ? []
@@ -62,12 +66,12 @@ export class Task {
   get isRunning(): boolean { return this.job !== undefined; }
   cancel(): void { this.job?.cancel(); }
 
-  /** \param choices  what can be pressed about it */
-  refuse(line: string, choices: HTMLElement[] = []): void {
+  /** \param choices  what can be pressed about it  \param names  of the files that it may name */
+  refuse(line: string, choices: HTMLElement[] = [], names: string[] = []): void {
     const box = this.part(".refusal");
     box.textContent = line;
     box.hidden = line === "";
-    const hint = hintOf(line);
+    const hint = hintOf(line, names);
     this.part(".choices").replaceChildren(...choices, ...(hint === "" || choices.length > 0 ? [] : [make("p", { className: "hint" }, hint)]));
   }
 
@@ -98,7 +102,12 @@ export class Task {
       this.section.dataset.memoryBytes = String(done.memoryBytes);
       const lines = done.stderr.split("\n").filter((line) => line !== "");
       const error = done.exitCode === 0 ? undefined : lines.at(-1);
-      if (error !== undefined) this.refuse(error);
+      if (error !== undefined) {
+        const names = run.files.map(({ path }) => path).filter((path) => path !== "");
+        const moved = names.filter((path) => /^(names|mask)\//.test(path));  // folders that nobody gave
+        this.refuse(moved.reduce((line, path) => line.replaceAll(path, path.slice(path.indexOf("/") + 1)), error), [],
+          names.map((path) => path.split("/").at(-1) ?? path));
+      }
       return done;
     } catch (error) {
       if (error instanceof Cancelled) this.refuse("Cancelled.");
@@ -187,5 +196,12 @@ export function tooLarge(what: string, bytes: number, program: string): string {
 export function number(id: string): string { return byId<HTMLInputElement>(id).value.trim(); }
 /** "100000" of "100,000" */
 export function count(id: string): string { return number(id).replaceAll(",", ""); }
+/** Names the files beyond those that a place takes. */
+export function tellLeftOut(task: Task, files: InputFile[], most: number): void {
+  if (files.length <= most) return;
+  task.refuse(`${files.length} files: ${most === 1 ? "one is" : `${most} are`} taken here; left out: ${files.slice(most).map(({ path }) => path).join(", ")}`);
+}
+
+export const isNumber = (text: string): boolean => text !== "" && Number.isFinite(Number(text));
 export function isChecked(id: string): boolean { return byId<HTMLInputElement>(id).checked; }
 export { formatCount };

@@ -49,7 +49,10 @@ async function makeInstance(options: Record<string, unknown>): Promise<Instance>
 }
 
 async function bytesOf(data: Blob | Uint8Array): Promise<Uint8Array> {
-  return data instanceof Uint8Array ? data : new Uint8Array(await data.arrayBuffer());
+  if (data instanceof Uint8Array) return data;
+  const bytes = new Uint8Array(data.size), kPiece = 2 ** 28;  // browsers read less than 2 GiB at once
+  for (let at = 0; at < data.size; at += kPiece) bytes.set(new Uint8Array(await data.slice(at, at + kPiece).arrayBuffer()), at);
+  return bytes;
 }
 
 async function put(fs: FileSystem, file: InputFile): Promise<void> {
@@ -76,7 +79,7 @@ async function run(id: number, request: RunRequest): Promise<void> {
   });
   for (const folder of request.folders) instance.FS.mkdirTree(`${kFolder}/${folder}`);
   for (const file of request.files) await put(instance.FS, file);
-  const given = new Set(request.files.map((file) => file.path));
+  const given = new Set(request.files.map((file) => file.path.replace(/^\.\//, "")));
   const begin = performance.now();
   const exitCode = instance.callMain(request.args);
   const seconds = (performance.now() - begin) / 1000;

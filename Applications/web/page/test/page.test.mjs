@@ -221,6 +221,19 @@ for (const browserName of kBrowsers) {
       assert.equal(await ended(page, "mesh"), "");
     });
 
+    it("takes a decimal comma for no other number", async () => {
+      for (const [field, option] of [["#iso", "--iso"], ["#max-error", "--max-error"]]) {
+        const before = await page.$eval(field, (input) => input.value);
+        await page.$eval(field, (input) => { input.value = ""; });
+        await page.type(field, "0,5");
+        await press(page, "#mesh .go");
+        assert.match(await ended(page, "mesh"), new RegExp(`^adaptiso-mesh: ${option} 0,5: decimals follow a point`));
+        await page.$eval(field, (input, value) => { input.value = value; }, before);
+      }
+      await press(page, "#mesh .go");
+      assert.equal(await ended(page, "mesh"), "");
+    });
+
     it("says of two scans that they are two", async () => {
       writeNifti(join(folder, "other.nii"), [8, 8, 8], (i) => i);
       await give(page, "#scan-files", join(folder, "balls.nii"), join(folder, "other.nii"));
@@ -359,6 +372,12 @@ for (const browserName of kBrowsers) {
         return performance.now() - begin;
       });
       assert.ok(milliseconds < kPatience * 200, `${milliseconds} ms`);
+      await press(page, "#mesh .go");  // a scan that is opened in another tab ends its run, too
+      await press(page, "#tab-labels");
+      await give(page, "#labels-file", join(folder, "balls.nii"));
+      await page.waitForFunction(() => document.body.dataset.scan === "balls.nii", { timeout: 120_000 });
+      assert.match(await ended(page, "mesh"), /^Cancelled/);
+      await press(page, "#tab-mesh");
       await give(page, "#scan-files", join(folder, "balls.nii"));
       await page.waitForFunction(() => document.body.dataset.scan === "balls.nii", { timeout: 120_000 });
       await press(page, "#mesh .go");
@@ -481,6 +500,16 @@ for (const browserName of kBrowsers) {
       const report = read((await saved(page, open.downloads, "#check .saves .main", "check.json")).toString());
       native(folder, "adaptiso-check", "balls.ply", "--json", "native.json");
       assert.deepEqual(report, read(readFileSync(join(folder, "native.json"))));
+    });
+
+    it("keeps a result of meshes where another file is refused", async () => {
+      const verdict = await textOf(page, "#check .verdict");
+      await give(page, "#check-files", join(folder, "notes.txt"));
+      await page.waitForFunction(() => !document.querySelector("#check .refusal").hidden, { timeout: 60_000 });
+      assert.match(await textOf(page, "#check .refusal"), /notes\.txt/);
+      assert.ok(await page.$eval("#check .verdict", (element) => element.checkVisibility()));
+      assert.equal(await textOf(page, "#check .verdict"), verdict);
+      assert.doesNotMatch(await textOf(page, "#check-names"), /notes/);
     });
 
     it("tells meshes of one name apart", async () => {
