@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "Bytes.h"
@@ -30,9 +31,16 @@ public:
     std::vector<Indices> cut(std::int64_t number, std::span<const VertexId> corners) {
         requirePlausible(number, corners);
         if (!areThere(number, corners)) return fan(corners.size());
-        flatten(number, corners);
-        std::vector<Indices> triangles = triangulatePolygon(flat_);
-        if (triangles.empty()) refuseShape(number);
+        std::vector<Indices> triangles = cutCoincident(corners);
+        std::vector<VertexId> left;
+        for (const std::uint32_t n : ring_) left.push_back(corners[n]);
+        std::vector<Indices> of;
+        if (flatten(left)) of = triangulatePolygon(flat_);
+        if (of.empty()) {
+            if (!areOnALine()) refuse(number, "crosses itself");
+            of = fan(left.size());
+        }
+        for (const auto& [a, b, c] : of) triangles.push_back({ring_[a], ring_[b], ring_[c]});
         return triangles;
     }
 
@@ -40,8 +48,35 @@ public:
     double largestDistance() const { return largestDistance_; }
 
 private:
-    [[noreturn]] static void refuseShape(std::int64_t number) {
-        refuse(number, "crosses itself, or has no area");
+    /// Cuts off corners at the place of the one before, as triangles without area. \post ring_ has
+    /// the others
+    std::vector<Indices> cutCoincident(std::span<const VertexId> corners) {
+        ring_.resize(corners.size());
+        std::iota(ring_.begin(), ring_.end(), 0U);
+        const auto place = [&](std::size_t n) { return points_[corners[ring_[n % ring_.size()]]]; };
+        std::vector<Indices> triangles;
+        for (std::size_t n = 0; n < ring_.size() && ring_.size() > 3;) {
+            if (place(n) != place(n + 1)) {
+                ++n;
+                continue;
+            }
+            const std::size_t next = (n + 1) % ring_.size(), after = (n + 2) % ring_.size();
+            triangles.push_back({ring_[n], ring_[next], ring_[after]});
+            ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(next));
+        }
+        return triangles;
+    }
+
+    /// They lie on a line, but for rounding. \pre flatten()
+    bool areOnALine() const {
+        constexpr double kRounding = 3e-5;  // of coordinates with five digits
+        Vec3 farthest;
+        for (const Vec3& p : local_) {
+            if (squaredNorm(p) > squaredNorm(farthest)) farthest = p;
+        }
+        return std::ranges::all_of(local_, [&](const Vec3& p) {
+            return norm(cross(farthest, p)) <= kRounding * squaredNorm(farthest);
+        });
     }
 
     void requirePlausible(std::int64_t number, std::span<const VertexId> corners) {
@@ -80,8 +115,8 @@ private:
     }
 
     /// Sets flat_ to the polygon in the plane of best fit, by Newell's normal. Exact where the
-    /// plane is one of the axes, so that corners on a line stay on it.
-    void flatten(std::int64_t number, std::span<const VertexId> corners) {
+    /// plane is one of the axes, so that corners on a line stay on it. \return  it has an area
+    bool flatten(std::span<const VertexId> corners) {
         const Vec3 origin = points_[static_cast<std::size_t>(corners.front())];
         local_.clear();
         double extent = 0, magnitude = 0;
@@ -93,7 +128,7 @@ private:
                 magnitude = std::max(magnitude, std::abs(p[axis]));
             }
         }
-        if (!(extent > 0) || !std::isfinite(extent)) refuseShape(number);
+        if (!(extent > 0) || !std::isfinite(extent)) return false;
         // By a power of 2: exact, and products of the very large and small stay in range.
         const int exponent = std::ilogb(extent);
         Vec3 normal, sum;
@@ -103,7 +138,7 @@ private:
             normal += cross(local_[i], local_[(i + 1) % local_.size()]);
             sum += local_[i];
         }
-        if (!(squaredNorm(normal) > 0)) refuseShape(number);
+        if (!(squaredNorm(normal) > 0)) return false;
         normal = normalized(normal);
         int across = 0;  // the axis that leans the least on the normal
         for (int axis = 1; axis < 3; ++axis) {
@@ -123,6 +158,7 @@ private:
         distance = std::scalbn(distance, exponent);
         if (distance > kRounding * magnitude)
             largestDistance_ = std::max(largestDistance_, distance);
+        return true;
     }
 
     static double scaled(double value, int exponent) { return std::scalbn(value, -exponent); }
@@ -130,6 +166,7 @@ private:
     const std::vector<Vec3>& points_;
     bool keepsFaults_;
     double largestDistance_ = 0;
+    std::vector<std::uint32_t> ring_;  ///< corners that are left, by index
     std::vector<VertexId> sorted_;
     std::vector<Vec3> local_;
     std::vector<Point2> flat_;
@@ -137,25 +174,32 @@ private:
 
 }  // namespace
 
-void Faces::requireCorners(std::span<const VertexId> corners) const {
-    if (corners.size() >= 3) return;
-    malformed("face " + std::to_string(count_) + " has " + std::to_string(corners.size()) +
-              " corners");
-}
-
 void Faces::add(std::span<const VertexId> corners) {
-    requireCorners(corners);
-    if (corners.size() == 3) {
-        triangles_.push_back({corners[0], corners[1], corners[2]});
+    const std::size_t begin = corners_.size();
+    for (std::size_t n = 0; n < corners.size(); ++n) {
+        const bool isRepeated =
+            corners.size() > 3 && corners[n] == corners[(n + 1) % corners.size()];
+        if (!isRepeated) corners_.push_back(corners[n]);
+    }
+    const std::size_t size = corners_.size() - begin;
+    if (size > 3) {
+        polygons_.push_back({count_, triangles_.size(), begin, size});
     } else {
-        polygons_.push_back({count_, triangles_.size(), corners_.size(), corners.size()});
-        corners_.insert(corners_.end(), corners.begin(), corners.end());
+        if (size == 3) {
+            triangles_.push_back({corners_[begin], corners_[begin + 1], corners_[begin + 2]});
+        } else {
+            ++lines_;
+        }
+        corners_.resize(begin);
     }
     ++count_;
 }
 
 void Faces::addStrip(std::span<const VertexId> corners) {
-    requireCorners(corners);
+    if (corners.size() < 3) {
+        malformed("strip " + std::to_string(count_) + " has " + std::to_string(corners.size()) +
+                  " corners");
+    }
     const std::size_t before = triangles_.size();
     for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
         const std::size_t odd = i % 2;
@@ -168,6 +212,7 @@ void Faces::addStrip(std::span<const VertexId> corners) {
 }
 
 void Faces::moveTo(MeshFile& file, bool keepsFaults) && {
+    noteLinesLeftOut(lines_, file.warnings);
     if (strips_ > 0) {
         file.warnings.push_back(
             {"polygons-cut", counted(strips_, "triangle strip was", "triangle strips were") +

@@ -16,7 +16,8 @@ class Faces {
 public:
     void reserve(std::size_t count) { triangles_.reserve(count); }
 
-    /// A triangle or a polygon. \throws FileError  fewer than 3 corners
+    /// A triangle or a polygon. A corner that is named twice in a row is one. What has fewer than 3
+    /// corners then is a line or a point, and left out.
     void add(std::span<const VertexId> corners);
 
     /// A triangle strip, whose every second triangle is turned round. Triangles that name a point
@@ -30,8 +31,10 @@ public:
     /// best fit through them, by triangulatePolygon(); a warning says how many were cut, and how
     /// far their corners lie off these planes.
     /// \pre    file.mesh has its points
-    /// \throws FileError  a polygon crosses itself, has no area, names a point twice or one that is
-    ///         not there (but for keepsFaults, where it is cut anyhow), or has too many corners
+    /// Of a polygon without area, or with corners at one place, triangles have no area.
+    /// \throws FileError  a polygon crosses itself, names a point twice or one that is not there
+    /// (but
+    ///         for keepsFaults, where it is cut anyhow), or has too many corners
     void moveTo(MeshFile& file, bool keepsFaults) &&;
 
 private:
@@ -41,12 +44,10 @@ private:
         std::size_t corner, size;  ///< in corners_
     };
 
-    void requireCorners(std::span<const VertexId> corners) const;
-
     std::vector<Triangle> triangles_;
     std::vector<Polygon> polygons_;
     std::vector<VertexId> corners_;  ///< of all polygons
-    std::int64_t count_ = 0, strips_ = 0, stripTriangles_ = 0;
+    std::int64_t count_ = 0, lines_ = 0, strips_ = 0, stripTriangles_ = 0;
 };
 
 /// Says that lines and points beside the faces were left out, where there are some.

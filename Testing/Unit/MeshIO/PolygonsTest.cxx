@@ -266,10 +266,41 @@ TEST(Polygons, OfDoubtfulShapeAreRefusedByNumber) {
         EXPECT_EQ(std::ranges::count(messages, messages[0]), std::ssize(messages));
         return messages[0].substr(0, messages[0].find(';'));
     };
-    EXPECT_EQ(refusal({0, 2, 1, 3}), "polygon 1 crosses itself, or has no area");
+    EXPECT_EQ(refusal({0, 2, 1, 3}), "polygon 1 crosses itself");
     EXPECT_EQ(refusal({0, 1, 2, 0, 3}), "polygon 1 names the point 0 twice");
     EXPECT_EQ(refusal({0, 1, 2, 8}), "polygon 1 uses point 8, must be 0 to 7");
-    EXPECT_EQ(refusal({0, 1}), "face 1 has 2 corners");
+}
+
+/// As triangles without area are, for adaptiso-check to report.
+TEST(Polygons, WithoutAreaAreKeptAsTrianglesWithoutArea) {
+    Faces mesh = kCube;
+    mesh.points.push_back({0.5, 0, 0});
+    mesh.points.push_back(mesh.points[0]);
+    const auto trianglesOf = [&](std::vector<int> face) {
+        mesh.faces = {{0, 3, 2}, std::move(face)};
+        std::vector<Triangle> first;
+        for (const auto& [name, bytes] : filesOf(mesh)) {
+            std::vector<Triangle> triangles = decoded(bytes, name).mesh.triangles;
+            if (first.empty()) first = triangles;
+            EXPECT_EQ(triangles, first) << name;
+        }
+        first.erase(first.begin());
+        return first;
+    };
+    EXPECT_EQ(trianglesOf({0, 8, 1, 9}), (std::vector<Triangle>{{9, 0, 8}, {8, 1, 9}}));
+    EXPECT_EQ(trianglesOf({0, 9, 1, 2}), (std::vector<Triangle>{{0, 9, 1}, {2, 0, 1}}));
+    EXPECT_EQ(trianglesOf({0, 0, 1, 2}), (std::vector<Triangle>{{0, 1, 2}}));
+    EXPECT_EQ(trianglesOf({0, 0, 1, 1}), (std::vector<Triangle>{}));
+    EXPECT_EQ(trianglesOf({0, 1}), (std::vector<Triangle>{}));
+}
+
+TEST(Polygons, OfTwoCornersAreLinesLeftOut) {
+    Faces mesh = kCube;
+    mesh.faces = {{0, 3, 2}, {0, 1}, {2, 2, 2, 2}};
+    const MeshFile file = decoded(offText(mesh), "a.off");
+    EXPECT_EQ(file.mesh.triangles.size(), 1U);
+    ASSERT_EQ(file.warnings.size(), 1U);
+    EXPECT_EQ(file.warnings[0].code, "lines-left-out");
 }
 
 TEST(Polygons, WithCornersThatAreNotThereAreKeptWithOtherFaults) {
