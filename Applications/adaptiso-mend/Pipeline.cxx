@@ -210,6 +210,11 @@ int runMend(const MendCommand& command) {
     }
     TriangleMesh shown;
     if (command.report.isWanted() && run.isMended()) shown = result;
+    if (run.isMended()) {
+        const auto warning =
+            mendWarning(run.statistics, run.input.areaMm2, baseName(command.input));
+        if (warning) run.warnings.push_back(*warning);
+    }
     if (!run.isMended()) {
         run.verdict = {kExitCheckFailed,
                        baseName(command.input) + ": can't be mended as asked: " + run.refusal};

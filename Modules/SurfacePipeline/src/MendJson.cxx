@@ -1,5 +1,6 @@
 #include "adaptiso/SurfacePipeline/MendJson.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 
@@ -107,6 +108,21 @@ std::vector<std::pair<std::string, MendedPlace>> mendPlaces(const MendStatistics
         for (const MendedPlace& place : statistics.*row.places) all.emplace_back(row.one, place);
     }
     return all;
+}
+
+std::optional<Warning> mendWarning(const MendStatistics& statistics, double areaMm2,
+                                   const std::string& file) {
+    constexpr double kMostPart = 0.05;
+    double dropped = 0;
+    for (const MendedPlace& part : statistics.thin) dropped += part.areaMm2;
+    if (!(dropped > kMostPart * areaMm2)) return std::nullopt;
+    const bool isOne = statistics.thin.size() == 1;
+    return Warning{
+        "parts-dropped",
+        counted(std::ssize(statistics.thin), "part", "parts") + " too thin for the bound, " +
+            formatFixed(100 * std::min(1.0, dropped / areaMm2), 0) + " % of the surface's area, " +
+            (isOne ? "was" : "were") + " dropped: a sheet without thickness is no solid",
+        file};
 }
 
 std::string mendDistanceText(const MendStatistics& statistics, double roundingMm) {

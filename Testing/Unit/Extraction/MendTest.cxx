@@ -107,6 +107,43 @@ TEST(Mend, ClosesAHoleOfOneTriangle) {
     EXPECT_EQ(mended.statistics.keptTriangles, 1279);
 }
 
+/// A slit three quarters round the ball, whose border crosses itself seen from anywhere.
+TEST(Mend, ClosesABentSlitByTheCornersOfItsBorder) {
+    TriangleMesh ball = bare(icosphere(3));
+    std::erase_if(ball.triangles, [&](const Triangle& t) {
+        const Vec3 middle = 1.0 / 3 * (ball.points[t[0]] + ball.points[t[1]] + ball.points[t[2]]);
+        return std::abs(middle.z) < 0.1 && std::abs(std::atan2(middle.y, middle.x)) < 2.4;
+    });
+    MendOptions options = within(0.05);
+    options.maxHoleMm = 3;
+    const Mended mended = mend(ball, options);
+    expectMended(mended);
+    EXPECT_EQ(mended.statistics.cells, 0);
+    EXPECT_EQ(mended.statistics.keptTriangles, std::ssize(ball.triangles));
+    EXPECT_EQ(std::ssize(mended.mesh.triangles),
+              std::ssize(ball.triangles) + mended.statistics.borderEdges - 2);
+}
+
+TEST(Mend, ClosesHolesThatShareACornerOneByOne) {
+    const TriangleMesh ball = bare(icosphere(3));
+    TriangleMesh holed = ball;
+    const Triangle first = holed.triangles[0];
+    const auto sharesOne = [&](const Triangle& t) {
+        return std::count_if(t.begin(), t.end(), [&](VertexId v) {
+                   return std::find(first.begin(), first.end(), v) != first.end();
+               }) == 1;
+    };
+    holed.triangles.erase(std::find_if(holed.triangles.begin(), holed.triangles.end(), sharesOne));
+    holed.triangles.erase(holed.triangles.begin());
+    MendOptions options = within(0.05);
+    options.maxHoleMm = 1;
+    const Mended mended = mend(holed, options);
+    expectMended(mended);
+    EXPECT_EQ(mended.statistics.cells, 0);
+    EXPECT_EQ(mended.statistics.borderEdges, 6);
+    EXPECT_EQ(mended.mesh.triangles.size(), ball.triangles.size());
+}
+
 TEST(Mend, UnitesSpheresThatCross) {
     // the union of two unit balls whose centres are half a radius apart: two balls less a lens
     const TriangleMesh spheres = bare(crossingSpheres(4));
@@ -297,6 +334,20 @@ TEST(Mend, RefusesWideRaggedHolesBeforeTheLongWork) {
     } catch (const MendRefusal& refusal) {
         EXPECT_NE(std::string(refusal.what()).find("a hole near"), std::string::npos);
         EXPECT_GT(refusal.statistics.borderEdges, 0);
+        EXPECT_EQ(refusal.statistics.cells, 0);
+    }
+}
+
+/// Hills, which what closes their border flatly would cross.
+TEST(Mend, RefusesAHillySheetBeforeTheLongWork) {
+    TriangleMesh hills = bare(planeMesh(20, 1));
+    for (Vec3& p : hills.points) p.z = 0.1 * std::sin(9 * p.x) * std::cos(7 * p.y);
+    try {
+        mend(hills, within(0.01));
+        FAIL();
+    } catch (const MendRefusal& refusal) {
+        EXPECT_NE(std::string(refusal.what()).find("a hole near"), std::string::npos)
+            << refusal.what();
         EXPECT_EQ(refusal.statistics.cells, 0);
     }
 }

@@ -77,8 +77,10 @@ py::tuple mendMesh(const MeshData& data, MendOptions options, const Around& arou
         throw InvalidInput(inWordsOfArguments(refusal.what()));
     }
     const Json found = foundJson(result.statistics, nested, around.fixed != nullptr);
-    return py::make_tuple(data.alike(std::move(result.mesh)), dumped(found),
-                          warningsOfBound(options.maxErrorMm, data.mesh()));
+    auto warnings = warningsOfBound(options.maxErrorMm, data.mesh());
+    const auto warning = mendWarning(result.statistics, surfaceArea(data.mesh()), {});
+    if (warning) warnings.push_back(*warning);
+    return py::make_tuple(data.alike(std::move(result.mesh)), dumped(found), warnings);
 }
 
 }  // namespace

@@ -1,10 +1,17 @@
 #include "mend/BorderCaps.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
 
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/PolygonTriangulation.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "mend/PlanarFiller.h"
 
@@ -13,36 +20,59 @@ namespace {
 
 constexpr std::size_t kMostOfRing = 4096;
 
-/// Rings of border edges, in the direction of triangles that close them.
-std::vector<std::vector<VertexId>> borderRings(const MendInput& input) {
-    constexpr VertexId kNone = -1, kSeveral = -2;
-    std::vector<std::uint8_t> uses(input.edges.size());
-    for (const auto& edges : input.edgeOf) {
-        for (const std::uint32_t e : edges)
-            uses[e] = static_cast<std::uint8_t>(std::min(uses[e] + 1, 3));
-    }
-    std::vector<VertexId> next(input.mesh.points.size(), kNone);
-    for (std::size_t t = 0; t < input.edgeOf.size(); ++t) {
-        const Triangle& corners = input.mesh.triangles[t];
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (uses[input.edgeOf[t][i]] != 1) continue;
-            VertexId& of = next[corners[(i + 1) % 3]];
-            of = of == kNone ? corners[i] : kSeveral;
-        }
-    }
-    std::vector<std::vector<VertexId>> rings;
-    for (VertexId first = 0; first < std::ssize(next); ++first) {
-        std::vector<VertexId> ring;
-        for (VertexId v = first; next[v] >= 0;) {
-            ring.push_back(v);
-            v = std::exchange(next[v], kNone);
-            if (v == first) {
-                rings.push_back(std::move(ring));
-                break;
+/// Edges, by their ends ascending.
+std::uint64_t keyOf(VertexId a, VertexId b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
+           static_cast<std::uint64_t>(std::max(a, b));
+}
+
+/// The triangulation of a ring of the least area in space [Barequet1995], of triangles with an area
+/// and edges that the mesh has not. Empty where there is none, or the ring is long.
+/// \param isTaken   whether an edge between two points is the mesh's
+/// \param isBarred  whether a triangle is not to be taken, by places in the ring, ascending
+template <class IsTaken, class IsBarred>
+std::vector<Triangle> leastArea(const std::vector<Vec3>& points, const std::vector<VertexId>& ring,
+                                const IsTaken& isTaken, const IsBarred& isBarred) {
+    constexpr std::size_t kMost = 256;  // time grows with the third power
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    const std::size_t size = ring.size();
+    if (size > kMost) return {};
+    std::vector<double> least(size * size);  // of the part from i to j, i < j
+    std::vector<std::size_t> apex(size * size);
+    for (std::size_t length = 2; length < size; ++length) {
+        for (std::size_t i = 0; i + length < size; ++i) {
+            const std::size_t j = i + length;
+            double& best = least[i * size + j];
+            best = kNone;
+            const bool isSide = length + 1 == size;  // of the ring itself
+            if (!isSide && isTaken(ring[i], ring[j])) continue;
+            for (std::size_t k = i + 1; k < j; ++k) {
+                const double parts = least[i * size + k] + least[k * size + j];
+                if (!(parts < best) || isBarred(i, k, j)) continue;
+                const Corners c{points[ring[i]], points[ring[k]], points[ring[j]]};
+                const double area = 0.5 * norm(areaVector2(c[0], c[1], c[2]));
+                const double longest = std::max(
+                    {squaredNorm(c[1] - c[0]), squaredNorm(c[2] - c[1]), squaredNorm(c[0] - c[2])});
+                constexpr double kFlat = 1e-6;  // of the longest side
+                if (area <= kFlat * longest || parts + area >= best) continue;
+                best = parts + area;
+                apex[i * size + j] = k;
             }
         }
     }
-    return rings;
+    if (!(least[size - 1] < kNone)) return {};
+    std::vector<Triangle> triangles;
+    std::vector<std::array<std::size_t, 2>> left{{0, size - 1}};
+    while (!left.empty()) {
+        const auto [i, j] = left.back();
+        left.pop_back();
+        if (j < i + 2) continue;
+        const std::size_t k = apex[i * size + j];
+        triangles.push_back({ring[i], ring[k], ring[j]});
+        left.push_back({i, k});
+        left.push_back({k, j});
+    }
+    return triangles;
 }
 
 /// A ring seen along its mean normal, counter-clockwise. Empty where it has none.
@@ -65,31 +95,130 @@ std::vector<Point2> seenFlat(const std::vector<Vec3>& points, const std::vector<
     return flat;
 }
 
+using EdgeSet = std::unordered_set<std::uint64_t>;  ///< by keyOf()
+
+/// By the least area of triangles that cross no other of the mesh, as far as some rounds lead.
+std::vector<Triangle> clearCap(const TriangleMesh& mesh, const AabbTree& tree,
+                               const std::vector<VertexId>& ring, const EdgeSet& taken) {
+    constexpr int kMostRounds = 32;
+    const std::size_t size = ring.size();
+    std::unordered_map<VertexId, std::size_t> placeOf;
+    for (std::size_t n = 0; n < size; ++n) placeOf[ring[n]] = n;
+    std::unordered_set<std::size_t> barred;
+    const auto numberOf = [&](std::size_t i, std::size_t k, std::size_t j) {
+        return (i * size + k) * size + j;
+    };
+    const auto crosses = [&](const Triangle& t) {
+        const Corners own{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
+        bool isFound = false;
+        tree.forEachOverlap(boxOf(own), [&](std::int64_t other) {
+            isFound = isFound || trianglesCross(own, cornersOf(mesh, other));
+        });
+        return isFound;
+    };
+    for (int round = 0; round < kMostRounds; ++round) {
+        std::vector<Triangle> triangles = leastArea(
+            mesh.points, ring, [&](VertexId a, VertexId b) { return taken.contains(keyOf(a, b)); },
+            [&](std::size_t i, std::size_t k, std::size_t j) {
+                return !barred.empty() && barred.contains(numberOf(i, k, j));
+            });
+        const std::size_t before = barred.size();
+        for (const Triangle& t : triangles) {
+            std::array<std::size_t, 3> at{placeOf.at(t[0]), placeOf.at(t[1]), placeOf.at(t[2])};
+            std::sort(at.begin(), at.end());
+            if (crosses(t)) barred.insert(numberOf(at[0], at[1], at[2]));
+        }
+        if (barred.size() == before) return triangles;
+    }
+    return {};
+}
+
+/// In the plane that fits best. Empty where the ring crosses itself in it.
+std::vector<Triangle> flatCap(const TriangleMesh& mesh, const std::vector<VertexId>& ring) {
+    std::vector<Triangle> triangles;
+    for (const auto& [a, b, c] : triangulatePolygon(seenFlat(mesh.points, ring))) {
+        triangles.push_back({ring[a], ring[b], ring[c]});
+    }
+    const auto haveArea = [&] {
+        return std::none_of(triangles.begin(), triangles.end(),
+                            [&](const Triangle& t) { return isDegenerate(mesh, t); });
+    };
+    if (haveArea()) return triangles;
+    Vec3 normal;
+    for (const auto& [a, b, c] : triangles) {
+        normal += areaVector2(mesh.points[a], mesh.points[b], mesh.points[c]);
+    }
+    flipSlivers(mesh.points, normalized(normal), triangles);
+    if (!haveArea()) triangles.clear();
+    return triangles;
+}
+
 }  // namespace
 
-void addCaps(MendInput& input) {
-    TriangleMesh& mesh = input.mesh;
-    std::uint32_t caps = 0;
-    for (const std::vector<VertexId>& ring : borderRings(input)) {
-        if (ring.size() < 3 || ring.size() > kMostOfRing) continue;
-        const auto cap = triangulatePolygon(seenFlat(mesh.points, ring));
-        std::vector<Triangle> triangles;
-        for (const auto& [a, b, c] : cap) triangles.push_back({ring[a], ring[b], ring[c]});
-        const auto haveArea = [&] {
-            return std::none_of(triangles.begin(), triangles.end(),
-                                [&](const Triangle& t) { return isDegenerate(mesh, t); });
-        };
-        if (!haveArea()) {
-            Vec3 normal;
-            for (const auto& [a, b, c] : triangles) {
-                normal += areaVector2(mesh.points[a], mesh.points[b], mesh.points[c]);
+std::vector<std::vector<VertexId>> borderRings(const MendInput& input) {
+    std::vector<std::uint8_t> uses(input.edges.size());
+    for (const auto& edges : input.edgeOf) {
+        for (const std::uint32_t e : edges)
+            uses[e] = static_cast<std::uint8_t>(std::min(uses[e] + 1, 3));
+    }
+    const Buckets<VertexId> next(input.mesh.points.size(), [&](const auto& give) {
+        for (std::size_t t = 0; t < input.edgeOf.size(); ++t) {
+            const Triangle& corners = input.mesh.triangles[t];
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (uses[input.edgeOf[t][i]] == 1) give(corners[(i + 1) % 3], corners[i]);
             }
-            flipSlivers(mesh.points, normalized(normal), triangles);
-            if (!haveArea()) continue;
         }
+    });
+    std::vector<std::vector<VertexId>> rings;
+    std::vector<std::size_t> taken(input.mesh.points.size());
+    std::vector<std::int64_t> placeOnPath(input.mesh.points.size(), -1);
+    for (VertexId first = 0; first < std::ssize(taken); ++first) {
+        std::vector<VertexId> path{first};
+        placeOnPath[first] = 0;
+        while (taken[path.back()] < next.of(path.back()).size()) {
+            const VertexId v = next.of(path.back())[taken[path.back()]++];
+            const std::int64_t place = placeOnPath[v];
+            if (place < 0) {
+                placeOnPath[v] = std::ssize(path);
+                path.push_back(v);
+                continue;
+            }
+            rings.emplace_back(path.begin() + place, path.end());
+            for (auto p = path.begin() + place + 1; p != path.end(); ++p) placeOnPath[*p] = -1;
+            path.resize(place + 1);
+        }
+        for (const VertexId v : path) placeOnPath[v] = -1;
+    }
+    return rings;
+}
+
+bool addCaps(MendInput& input, bool isByArea) {
+    TriangleMesh& mesh = input.mesh;
+    const auto rings = borderRings(input);
+    std::vector<std::uint8_t> isOnRing(mesh.points.size());
+    for (const auto& ring : rings) {
+        for (const VertexId v : ring) isOnRing[v] = 1;
+    }
+    std::optional<AabbTree> tree;
+    EdgeSet taken;
+    for (const MendInput::Edge& edge : input.edges) {
+        if (isOnRing[edge.a] != 0 && isOnRing[edge.b] != 0) taken.insert(keyOf(edge.a, edge.b));
+    }
+    std::uint32_t caps = input.capOf.empty() ? 0 : input.capOf.back() + 1;
+    const std::uint32_t before = caps;
+    for (const std::vector<VertexId>& ring : rings) {
+        if (ring.size() < 3 || ring.size() > kMostOfRing) continue;
+        std::vector<Triangle> triangles;
+        if (!isByArea) triangles = flatCap(mesh, ring);
+        if (triangles.empty()) {
+            if (!tree) tree.emplace(mesh);
+            triangles = clearCap(mesh, *tree, ring, taken);
+        }
+        if (triangles.empty()) continue;
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
         input.capOf.insert(input.capOf.end(), triangles.size(), caps++);
     }
+    return caps != before;
 }
 
 bool dropCrossingCaps(MendInput& input) {

@@ -4,11 +4,18 @@
 
 namespace adaptiso::detail {
 
-/// Closes holes by triangles between the corners of their borders, in the plane that fits best:
-/// appends them to the mesh. Borders that meet themselves, are longer than some thousand edges, or
-/// cross themselves seen across that plane, stay.
+/// Rings of border edges, in the direction of triangles that close them. Where a border meets
+/// itself, it is cut into rings that do not.
+/// \pre triangles that hang together face one way; edges are found
+std::vector<std::vector<VertexId>> borderRings(const MendInput& input);
+
+/// Closes holes by triangles between the corners of their borders: appends them to the mesh. They
+/// are those in the plane that fits best, or, where the border crosses itself seen across it, those
+/// of the least area. Borders of some thousand edges (by area: of some hundred) stay.
+/// \param isByArea  all by the least area
 /// \pre triangles that hang together face one way; edges are found \post edges are not
-void addCaps(MendInput& input);
+/// \return  whether there are any
+bool addCaps(MendInput& input, bool isByArea);
 
 /// Takes away caps that cross anything, and all their crossings.
 /// \post edges are not found

@@ -16,6 +16,7 @@
 #include "adaptiso/Extraction/Tiles.h"
 #include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "mend/BorderCaps.h"
 #include "mend/CrossingCuts.h"
 #include "mend/HandleCuts.h"
 #include "mend/MendAssembly.h"
@@ -219,6 +220,13 @@ void requireVolume(const MendInput& input, const detail::WindingField& field, do
     refuseNothing(maxErrorMm);
 }
 
+/// Nothing is wrong but that there may be borders.
+bool hasBordersAlone(const MendInput& input, const MendStatistics& found) {
+    return found.degenerateTriangles == 0 && found.duplicateTriangles == 0 &&
+           found.mergedPoints == 0 && found.flippedTriangles == 0 && found.badEdges == 0 &&
+           found.badVertices == 0 && found.crossingTriangles == 0 && !input.oneSidedMm;
+}
+
 /// Refuses a hole that is too wide before work begins, where a cap closes it.
 void requireNarrowCaps(const MendInput& input, double boundMm, double maxHoleMm) {
     if (input.capOf.empty()) return;
@@ -233,6 +241,32 @@ void requireNarrowCaps(const MendInput& input, double boundMm, double maxHoleMm)
     const auto places = detail::connectedPlaces(input.mesh, isFar);
     if (!places.empty() && places[0].first.spanMm > maxHoleMm) {
         refuseHole(places[0].first, maxHoleMm);
+    }
+}
+
+/// Refuses a sheet without a fault but borders, one of which is too wide and has no cap. What
+/// closes it is as wide, and has at least the area that the border has seen along its mean normal:
+/// more than a crack, which the lattice closes.
+void requireNarrowBorders(const MendInput& input, const MendStatistics& found, double boundMm,
+                          double maxHoleMm) {
+    if (!hasBordersAlone(input, found) || labelComponents(input.mesh).count != 1) return;
+    for (const auto& ring : detail::borderRings(input)) {
+        TriangleMesh border;  // an edge as a triangle without area
+        Vec3 area;
+        for (std::size_t n = 0; n < ring.size(); ++n) {
+            const auto next = static_cast<VertexId>((n + 1) % ring.size());
+            border.points.push_back(input.mesh.points[ring[n]]);
+            border.triangles.push_back({static_cast<VertexId>(n), next, next});
+            area += 0.5 * cross(input.mesh.points[ring[n]] - input.mesh.points[ring[0]],
+                                input.mesh.points[ring[next]] - input.mesh.points[ring[0]]);
+        }
+        const std::vector<std::uint8_t> all(border.triangles.size(), 1);
+        const MendedPlace place = detail::connectedPlaces(border, all).front().first;
+        constexpr double kCells = 4;
+        if (place.spanMm - 2 * boundMm > maxHoleMm &&
+            norm(area) > kCells * spacingFor(boundMm) * place.spanMm) {
+            refuseHole(place, maxHoleMm);
+        }
     }
 }
 
@@ -351,11 +385,7 @@ double widestHole(const MendOptions& options, const BoundingBox& box) {
 /// none: it has a closed piece or another fault.
 std::vector<MendedPlace> bordersOfSheets(const TriangleMesh& mesh, const MendInput& input,
                                          const MendStatistics& found) {
-    if (found.degenerateTriangles > 0 || found.duplicateTriangles > 0 || found.mergedPoints > 0 ||
-        found.flippedTriangles > 0 || found.badEdges > 0 || found.badVertices > 0 ||
-        found.crossingTriangles > 0 || input.oneSidedMm) {
-        return {};
-    }
+    if (!hasBordersAlone(input, found)) return {};
     const ComponentLabels pieces = labelComponents(mesh);
     std::vector<std::uint8_t> isOpen(pieces.count);
     TriangleMesh borders{mesh.points, {}, {}};  // an edge as a triangle without area
@@ -389,6 +419,7 @@ TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, cons
     requireVolume(input, field, boundMm, statistics.maxErrorMm);
     if (!options.leavesHolesOpen) {
         requireNarrowCaps(input, boundMm, maxHoleMm);
+        requireNarrowBorders(input, statistics, boundMm, maxHoleMm);
         rehearse(input, tree, field, box, boundMm, maxHoleMm);
     }
     for (std::size_t attempt = 0; attempt < kShifts.size(); ++attempt) {

@@ -647,17 +647,19 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
         if (uses[e] == 1) input.borders.push_back({input.edges[e].a, input.edges[e].b});
     }
     statistics.borderEdges = std::ssize(input.borders);
-    std::vector<std::uint8_t> isTurned =
-        makeSheetsFaceOneWay(input, trianglesAtEdges(input)).isTurned;
-    addCaps(input);
-    findEdges(input);
     Sheets sheets = makeSheetsFaceOneWay(input, trianglesAtEdges(input));
-    turnSheetsOutward(input, sheets);
-    for (std::size_t t = 0; t < isTurned.size(); ++t) {
-        if (sheets.isTurned[t] != isTurned[t]) ++statistics.flippedTriangles;
+    std::vector<std::uint8_t> isTurned = sheets.isTurned;
+    for (const bool isByArea : {false, true}) {  // by area: caps that cross something otherwise
+        if (!addCaps(input, isByArea) && isByArea) break;
+        findEdges(input);
+        sheets = makeSheetsFaceOneWay(input, trianglesAtEdges(input));
+        turnSheetsOutward(input, sheets);
+        for (std::size_t t = 0; t < isTurned.size(); ++t) isTurned[t] ^= sheets.isTurned[t];
+        findCrossings(input);
+        if (!dropCrossingCaps(input)) break;
+        findEdges(input);
     }
-    findCrossings(input);
-    if (dropCrossingCaps(input)) findEdges(input);
+    statistics.flippedTriangles = std::count(isTurned.begin(), isTurned.end(), 1);
     countCrossing(input, statistics);
     judgeSurface(input, statistics);
     const bool isOneSided = std::all_of(sheets.oddPoint.begin(), sheets.oddPoint.end(),

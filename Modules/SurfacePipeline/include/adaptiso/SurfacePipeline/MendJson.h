@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "adaptiso/Core/Warning.h"
 #include "adaptiso/Extraction/Mend.h"
 #include "adaptiso/Json/Json.h"
 
@@ -21,6 +23,11 @@ std::vector<std::string> mendPlaceTexts(const MendStatistics& statistics);
 
 /// Each of them, with its kind: "hole closed".
 std::vector<std::pair<std::string, MendedPlace>> mendPlaces(const MendStatistics& statistics);
+
+/// "parts-dropped", where what was too thin for the bound is more than a twentieth of the surface.
+/// \param areaMm2  of the input
+std::optional<Warning> mendWarning(const MendStatistics& statistics, double areaMm2,
+                                   const std::string& file);
 
 /// How far the two surfaces lie apart, but for what is listed.
 std::string mendDistanceText(const MendStatistics& statistics, double roundingMm);
