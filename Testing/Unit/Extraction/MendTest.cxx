@@ -156,6 +156,20 @@ TEST(Mend, UnitesSpheresThatCross) {
     EXPECT_NEAR(areaOf(mended.statistics.inner), 2 * 2 * std::numbers::pi * 0.75, 0.3);
 }
 
+/// The other ball closes it.
+TEST(Mend, TakesAWideHoleWithinTheSolidForNone) {
+    const TriangleMesh whole = bare(icosphere(4, {1.2, 0, 0}));
+    TriangleMesh open = whole;
+    std::erase_if(open.triangles, [&](const Triangle& t) { return open.points[t[0]].x < 0.5; });
+    MendOptions options = within(0.02);
+    options.maxHoleMm = 0.1;
+    const Mended mended = mend(merged({bare(icosphere(4)), open}), options);
+    expectMended(mended);
+    EXPECT_TRUE(mended.statistics.filled.empty());
+    const Mended united = mend(merged({bare(icosphere(4)), whole}), options);
+    EXPECT_NEAR(enclosedVolume(mended.mesh), enclosedVolume(united.mesh), 1e-6);
+}
+
 TEST(Mend, TurnsWhatIsFlipped) {
     const TriangleMesh sphere = bare(icosphere(3));
     const Mended one = mend(withFlippedTriangle(sphere));

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kMostOfRing = 4096;
 
 /// Edges, by their ends ascending.
-std::uint64_t keyOf(VertexId a, VertexId b) {
+std::uint64_t endsKey(VertexId a, VertexId b) {
     return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
            static_cast<std::uint64_t>(std::max(a, b));
 }
@@ -95,7 +95,7 @@ std::vector<Point2> seenFlat(const std::vector<Vec3>& points, const std::vector<
     return flat;
 }
 
-using EdgeSet = std::unordered_set<std::uint64_t>;  ///< by keyOf()
+using EdgeSet = std::unordered_set<std::uint64_t>;  ///< by endsKey()
 
 /// By the least area of triangles that cross no other of the mesh, as far as some rounds lead.
 std::vector<Triangle> clearCap(const TriangleMesh& mesh, const AabbTree& tree,
@@ -118,7 +118,8 @@ std::vector<Triangle> clearCap(const TriangleMesh& mesh, const AabbTree& tree,
     };
     for (int round = 0; round < kMostRounds; ++round) {
         std::vector<Triangle> triangles = leastArea(
-            mesh.points, ring, [&](VertexId a, VertexId b) { return taken.contains(keyOf(a, b)); },
+            mesh.points, ring,
+            [&](VertexId a, VertexId b) { return taken.contains(endsKey(a, b)); },
             [&](std::size_t i, std::size_t k, std::size_t j) {
                 return !barred.empty() && barred.contains(numberOf(i, k, j));
             });
@@ -202,7 +203,7 @@ bool addCaps(MendInput& input, bool isByArea) {
     std::optional<AabbTree> tree;
     EdgeSet taken;
     for (const MendInput::Edge& edge : input.edges) {
-        if (isOnRing[edge.a] != 0 && isOnRing[edge.b] != 0) taken.insert(keyOf(edge.a, edge.b));
+        if (isOnRing[edge.a] != 0 && isOnRing[edge.b] != 0) taken.insert(endsKey(edge.a, edge.b));
     }
     std::uint32_t caps = input.capOf.empty() ? 0 : input.capOf.back() + 1;
     const std::uint32_t before = caps;

@@ -227,21 +227,40 @@ bool hasBordersAlone(const MendInput& input, const MendStatistics& found) {
            found.badVertices == 0 && found.crossingTriangles == 0 && !input.oneSidedMm;
 }
 
-/// Refuses a hole that is too wide before work begins, where a cap closes it.
-void requireNarrowCaps(const MendInput& input, double boundMm, double maxHoleMm) {
+/// Refuses a hole that is too wide before work begins, where a cap closes it. One that lies within
+/// the solid closes nothing.
+void requireNarrowCaps(const MendInput& input, const detail::WindingField& field, double boundMm,
+                       double maxHoleMm) {
     if (input.capOf.empty()) return;
     const TriangleMesh given = input.given();
     const detail::NearnessProof proof(given, boundMm);
     std::vector<std::uint8_t> isFar(input.mesh.triangles.size());
     for (std::int64_t t = input.firstCap(); t < std::ssize(input.mesh.triangles); ++t) {
         detail::NearnessProof::Result found;
-        proof.prove(cornersOf(input.mesh, t), spacingFor(boundMm) / 4, found);
-        isFar[t] = found.others.empty() ? 0 : 1;
+        const Corners c = cornersOf(input.mesh, t);
+        proof.prove(c, spacingFor(boundMm) / 4, found);
+        if (found.others.empty()) continue;
+        const Vec3 middle = 1.0 / 3 * (c[0] + c[1] + c[2]),
+                   step = 1e-3 * boundMm * normalized(areaVector2(c[0], c[1], c[2]));
+        const bool isWithin = field.at(middle + step) >= 0.5 && field.at(middle - step) >= 0.5;
+        isFar[t] = isWithin ? 0 : 1;
     }
     const auto places = detail::connectedPlaces(input.mesh, isFar);
     if (!places.empty() && places[0].first.spanMm > maxHoleMm) {
         refuseHole(places[0].first, maxHoleMm);
     }
+}
+
+/// The parts of borders that hang together, the widest first.
+/// \param give  calls its argument with the two points of each border edge
+template <class Give>
+std::vector<MendedPlace> borderPlaces(const std::vector<Vec3>& points, const Give& give) {
+    TriangleMesh borders{points, {}, {}};  // an edge as a triangle without area
+    give([&](VertexId a, VertexId b) { borders.triangles.push_back({a, b, b}); });
+    const std::vector<std::uint8_t> all(borders.triangles.size(), 1);
+    std::vector<MendedPlace> places;
+    for (const auto& border : detail::connectedPlaces(borders, all)) places.push_back(border.first);
+    return places;
 }
 
 /// Refuses a sheet without a fault but borders, one of which is too wide and has no cap. What
@@ -251,17 +270,17 @@ void requireNarrowBorders(const MendInput& input, const MendStatistics& found, d
                           double maxHoleMm) {
     if (!hasBordersAlone(input, found) || labelComponents(input.mesh).count != 1) return;
     for (const auto& ring : detail::borderRings(input)) {
-        TriangleMesh border;  // an edge as a triangle without area
+        std::vector<Vec3> points;
         Vec3 area;
-        for (std::size_t n = 0; n < ring.size(); ++n) {
-            const auto next = static_cast<VertexId>((n + 1) % ring.size());
-            border.points.push_back(input.mesh.points[ring[n]]);
-            border.triangles.push_back({static_cast<VertexId>(n), next, next});
-            area += 0.5 * cross(input.mesh.points[ring[n]] - input.mesh.points[ring[0]],
-                                input.mesh.points[ring[next]] - input.mesh.points[ring[0]]);
+        for (const VertexId v : ring) {
+            points.push_back(input.mesh.points[v]);
+            const Vec3& before = points[std::max<std::size_t>(points.size(), 2) - 2];
+            area += 0.5 * cross(before - points[0], points.back() - points[0]);
         }
-        const std::vector<std::uint8_t> all(border.triangles.size(), 1);
-        const MendedPlace place = detail::connectedPlaces(border, all).front().first;
+        const MendedPlace place = borderPlaces(points, [&](const auto& add) {
+                                      for (VertexId n = 1; n < std::ssize(points); ++n)
+                                          add(n - 1, n);
+                                  }).front();
         constexpr double kCells = 4;
         if (place.spanMm - 2 * boundMm > maxHoleMm &&
             norm(area) > kCells * spacingFor(boundMm) * place.spanMm) {
@@ -359,9 +378,15 @@ void rehearse(const MendInput& input, const AabbTree& tree, const detail::Windin
     if (!mendIn(region, input, field, lattice, {}, assembly)) return;
     detail::findBridges(input, lattice, roughMm, assembly);
     const auto places = filledPlaces(assembly);
-    if (!places.empty() && places[0].first.spanMm > maxHoleMm + 2 * roughMm) {
-        refuseHole(places[0].first, maxHoleMm);
-    }
+    if (places.empty() || places[0].first.spanMm <= maxHoleMm + 2 * roughMm) return;
+    // narrow holes beside each other may look like one here: a wide one has a border as wide
+    const auto borders = borderPlaces(input.mesh.points, [&](const auto& add) {
+        for (const auto& ring : detail::borderRings(input)) {
+            for (std::size_t n = 0; n < ring.size(); ++n) add(ring[n], ring[(n + 1) % ring.size()]);
+        }
+    });
+    if (borders.empty() || borders[0].spanMm + 4 * roughMm < places[0].first.spanMm) return;
+    refuseHole(places[0].first, maxHoleMm);
 }
 
 /// Removes handles, and counts what that moves.
@@ -388,19 +413,12 @@ std::vector<MendedPlace> bordersOfSheets(const TriangleMesh& mesh, const MendInp
     if (!hasBordersAlone(input, found)) return {};
     const ComponentLabels pieces = labelComponents(mesh);
     std::vector<std::uint8_t> isOpen(pieces.count);
-    TriangleMesh borders{mesh.points, {}, {}};  // an edge as a triangle without area
-    for (const auto& [a, b] : input.borders) {
-        borders.triangles.push_back({a, b, b});
-        isOpen[pieces.ofVertex[a]] = 1;
-    }
+    for (const auto& [a, b] : input.borders) isOpen[pieces.ofVertex[a]] = 1;
     const auto isClosed = [&](const Triangle& t) { return isOpen[pieces.ofVertex[t[0]]] == 0; };
     if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), isClosed)) return {};
-    std::vector<MendedPlace> places;
-    const std::vector<std::uint8_t> all(borders.triangles.size(), 1);
-    for (const auto& border : detail::connectedPlaces(borders, all)) {
-        places.push_back(border.first);
-    }
-    return places;
+    return borderPlaces(mesh.points, [&](const auto& add) {
+        for (const auto& [a, b] : input.borders) add(a, b);
+    });
 }
 
 /// mend() of a prepared input. `statistics` holds what was found.
@@ -418,7 +436,7 @@ TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, cons
     const double maxHoleMm = widestHole(options, box);
     requireVolume(input, field, boundMm, statistics.maxErrorMm);
     if (!options.leavesHolesOpen) {
-        requireNarrowCaps(input, boundMm, maxHoleMm);
+        requireNarrowCaps(input, field, boundMm, maxHoleMm);
         requireNarrowBorders(input, statistics, boundMm, maxHoleMm);
         rehearse(input, tree, field, box, boundMm, maxHoleMm);
     }
