@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <set>
 #include <string>
 #include <string_view>
@@ -10,6 +11,45 @@ namespace adaptiso {
 /// True if lists and objects are nested deeper than in any JSON that is written on purpose.
 bool isDeeplyNested(std::string_view json);
 
+/// Follows a parser, and finds whether an object has a key twice.
+template <class Json>
+class RepeatedKeys {
+public:
+    bool areFound() const { return areFound_; }
+
+    bool start_object(std::size_t) {
+        keys_.emplace_back();
+        return true;
+    }
+    bool key(typename Json::string_t& name) {
+        areFound_ = areFound_ || !keys_.back().insert(name).second;
+        return true;
+    }
+    bool end_object() {
+        keys_.pop_back();
+        return true;
+    }
+    bool start_array(std::size_t) { return true; }
+    bool end_array() { return true; }
+    bool null() { return true; }
+    bool boolean(bool) { return true; }
+    bool number_integer(typename Json::number_integer_t) { return true; }
+    bool number_unsigned(typename Json::number_unsigned_t) { return true; }
+    bool number_float(typename Json::number_float_t, const typename Json::string_t&) {
+        return true;
+    }
+    bool string(typename Json::string_t&) { return true; }
+    bool binary(typename Json::binary_t&) { return true; }
+    template <class Error>
+    bool parse_error(std::size_t, const std::string&, const Error&) {
+        return false;
+    }
+
+private:
+    std::vector<std::set<std::string>> keys_;  ///< of the objects that are open
+    bool areFound_ = false;
+};
+
 /// Parses a text from outside. What copies, writes and removes JSON calls itself for each level, so
 /// that deep nesting would end the program.
 /// \tparam Json  nlohmann's, ordered or not
@@ -17,21 +57,14 @@ bool isDeeplyNested(std::string_view json);
 ///         has a key twice, of which programs take different ones
 template <class Json>
 Json parseJson(std::string_view text) {
-    if (isDeeplyNested(text)) return Json(Json::value_t::discarded);
-    std::vector<std::set<std::string>> keys;  // of the objects that are open
-    bool isTwice = false;
-    const auto look = [&](int, auto event, Json& key) {
-        using Event = decltype(event);
-        if (event == Event::object_start) keys.emplace_back();
-        if (event == Event::object_end) keys.pop_back();
-        if (event == Event::key) {
-            const bool isNew = keys.back().insert(key.template get<std::string>()).second;
-            isTwice = isTwice || !isNew;
-        }
-        return true;
-    };
-    Json json = Json::parse(text, look, false);
-    return isTwice ? Json(Json::value_t::discarded) : json;
+    Json json(Json::value_t::discarded);
+    if (isDeeplyNested(text)) return json;
+    // a pass of its own: nlohmann's parser with a callback takes quadratic time for long arrays
+    RepeatedKeys<Json> repeated;
+    if (Json::sax_parse(text, &repeated) && !repeated.areFound()) {
+        json = Json::parse(text, nullptr, false);
+    }
+    return json;
 }
 
 /// The whole number that `json` is. get() of one with a decimal point or an exponent is undefined
