@@ -181,12 +181,14 @@ void finish(TriangleMesh result, std::vector<Vec3> mended, const TriangleMesh& f
 int runMendBatch(const MendCommand& command) {
     BatchProgram program{
         "adaptiso-mend", "{file}", {"--around"}, {"--output", "--report", "--pictures"}};
+    BatchOptions batch = command.batch;
     if (command.isDryRun) {
         program.defaultOutput.clear();
         program.keepsRecords = false;
+        batch.outputFolder.clear();
     }
-    return runBatch(program, findBatchItems(command.batch, command.inputs, surfaceName),
-                    command.batch, command.common);
+    return runBatch(program, findBatchItems(batch, command.inputs, surfaceName), batch,
+                    command.common);
 }
 
 }  // namespace

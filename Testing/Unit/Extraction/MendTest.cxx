@@ -156,6 +156,42 @@ TEST(Mend, UnitesSpheresThatCross) {
     EXPECT_NEAR(areaOf(mended.statistics.inner), 2 * 2 * std::numbers::pi * 0.75, 0.3);
 }
 
+/// A ring of a hole round an island that hangs on two corners, whatever the order of triangles.
+TEST(Mend, ClosesTheHolesBesideAnIslandApart) {
+    const TriangleMesh ball = bare(icosphere(3));
+    const Vec3 pole = normalized(ball.points[ball.triangles[0][0]]);
+    TriangleMesh holed = ball;
+    // rings round a corner: the triangles with one corner on the second ring and none on the first
+    std::vector<int> ring(ball.points.size(), 9);
+    ring[ball.triangles[0][0]] = 0;
+    for (int n = 0; n < 3; ++n) {
+        for (const Triangle& t : ball.triangles) {
+            for (const VertexId v : t) {
+                for (const VertexId w : t) {
+                    if (ring[v] == n) ring[w] = std::min(ring[w], n + 1);
+                }
+            }
+        }
+    }
+    const Vec3 along = normalized(cross(pole, Vec3{0.3, 0.5, 0.8}));
+    std::erase_if(holed.triangles, [&](const Triangle& t) {
+        const int least = std::min({ring[t[0]], ring[t[1]], ring[t[2]]});
+        const Vec3 middle = 1.0 / 3 * (ball.points[t[0]] + ball.points[t[1]] + ball.points[t[2]]);
+        return least == 1 && std::abs(dot(middle, along)) > 0.06;
+    });
+    MendOptions options = within(0.02);
+    options.maxHoleMm = 3;
+    std::mt19937 random(1);
+    for (int n = 0; n < 4; ++n) {
+        const Mended mended = mend(holed, options);
+        expectMended(mended);
+        EXPECT_EQ(mended.statistics.cells, 0);
+        EXPECT_EQ(mended.statistics.keptTriangles, std::ssize(holed.triangles));
+        EXPECT_NEAR(enclosedVolume(mended.mesh), enclosedVolume(ball), 0.02);
+        std::shuffle(holed.triangles.begin(), holed.triangles.end(), random);
+    }
+}
+
 /// The other ball closes it.
 TEST(Mend, TakesAWideHoleWithinTheSolidForNone) {
     const TriangleMesh whole = bare(icosphere(4, {1.2, 0, 0}));

@@ -92,12 +92,16 @@ public:
     bool cut(const std::vector<std::array<std::uint32_t, 2>>& crossing) {
         const auto pairs = withNear(crossing);
         if (pairs.empty() || pairs.size() > kMostPairs) return false;
+        std::vector<std::uint8_t> isNumbered(points_.size());
         for (const auto& pair : pairs) {
             for (const std::uint32_t t : pair) {
                 for (const VertexId v : input_.mesh.triangles[t]) {
+                    if (std::exchange(isNumbered[v], std::uint8_t{1}) != 0) continue;
                     const auto number = static_cast<Id>(v);
                     const Id first = nearPlaces_.add(points_[v], number);
-                    if (first != number) becomes_[number] = first;
+                    if (first == number) continue;
+                    becomes_[number] = first;
+                    result_.movedMm = std::max(result_.movedMm, norm(at(first) - at(number)));
                 }
             }
         }
@@ -202,7 +206,7 @@ private:
         for (auto& edges : edgeOf_) {
             for (std::uint32_t& e : edges) {
                 const std::uint32_t a = input_.edges[e].a, b = input_.edges[e].b;
-                if (!joined.contains(a) || !joined.contains(b)) continue;
+                if (!joined.contains(a) && !joined.contains(b)) continue;
                 const Id p = placed(a), q = placed(b);
                 e = first.try_emplace({std::min(p, q), std::max(p, q)}, e).first->second;
             }
@@ -495,7 +499,10 @@ private:
         for (const std::uint32_t e : edgeOf_[t]) isWhole = isWhole && onEdge_[e].empty();
         const bool isFlat =
             corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
-        result_.isCut.push_back(isWhole && !isFlat ? 0 : 1);
+        const Triangle& given = input_.mesh.triangles[t];
+        const bool isSame = std::equal(corners.begin(), corners.end(), given.begin(),
+                                       [](Id one, VertexId other) { return one == other; });
+        result_.isCut.push_back(isWhole && isSame ? 0 : 1);
         if (isFlat) return true;
         if (isWhole) {
             result_.triangles.push_back(corners);

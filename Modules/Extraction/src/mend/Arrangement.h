@@ -16,7 +16,8 @@ namespace adaptiso::detail {
 struct Arrangement {
     std::vector<std::array<CutTriangle::Id, 3>> triangles;  ///< of the mesh's points and new ones
     std::vector<std::uint32_t> origin;  ///< of each, the mesh's triangle, ascending
-    std::vector<std::uint8_t> isCut;    ///< of the mesh's
+    std::vector<std::uint8_t> isCut;    ///< of the mesh's: it is not there as it was
+    double movedMm = 0;                 ///< how far a corner moved to be one with another
 };
 
 /// orient3d() and orient2d() decide whether triangles meet. What lies within `nearMm` of another

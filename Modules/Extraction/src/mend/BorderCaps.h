@@ -9,10 +9,9 @@ namespace adaptiso::detail {
 /// \pre triangles that hang together face one way; edges are found
 std::vector<std::vector<VertexId>> borderRings(const MendInput& input);
 
-/// Closes holes by triangles between the corners of their borders: appends them to the mesh. They
-/// are those in the plane that fits best, or, where the border crosses itself seen across it, those
-/// of the least area. Borders of some thousand edges (by area: of some hundred) stay.
-/// \param isByArea  all by the least area
+/// Closes holes by triangles between the corners of their borders: appends them to the mesh.
+/// \param isByArea  by those of the least area that cross nothing, borders of up to 256 edges; else
+///                  by those in the plane that fits best, borders of up to 4096 edges
 /// \pre triangles that hang together face one way; edges are found \post edges are not
 /// \return  whether there are any
 bool addCaps(MendInput& input, bool isByArea);

@@ -277,6 +277,7 @@ private:
         const TriangleMesh before = cut_.mesh;
         const auto arrangement = arrange(cut_, cut_.crossingPairs, nearMm_);
         if (!arrangement) return false;
+        movedMm_ += arrangement->movedMm;
         const std::vector<Face> faces = facesOf(arrangement->triangles);
         auto patches = patchesOf(faces);
         if (!patches) return false;
@@ -529,7 +530,7 @@ private:
     /// How far what was kept may lie from what became of it, and the other way. What is farther is
     /// dropped. None where there is such a thing in the result.
     std::optional<double> prove() {
-        double upperMm = 8 * nearMm_;  // by which parts were moved as they were cut
+        double upperMm = 8 * nearMm_ + movedMm_;  // by which parts were moved as they were cut
         std::vector<Corners> changed;
         for (std::size_t t = 0; t < cut_.partOf.size(); ++t) {
             const std::int64_t origin = cut_.partOf[t];
@@ -613,6 +614,7 @@ private:
 
     const MendInput& input_;
     double boundMm_, nearMm_, sizeMm_;
+    double movedMm_ = 0;      ///< by corners that became one with others
     ComponentLabels sheets_;  ///< of the input
     std::size_t firstNew_;    ///< points from this on are not the input's
     MendInput cut_;

@@ -220,11 +220,11 @@ void requireVolume(const MendInput& input, const detail::WindingField& field, do
     refuseNothing(maxErrorMm);
 }
 
-/// Nothing is wrong but that there may be borders.
+/// Nothing is wrong but that there may be borders, and that triangles were turned round.
 bool hasBordersAlone(const MendInput& input, const MendStatistics& found) {
     return found.degenerateTriangles == 0 && found.duplicateTriangles == 0 &&
-           found.mergedPoints == 0 && found.flippedTriangles == 0 && found.badEdges == 0 &&
-           found.badVertices == 0 && found.crossingTriangles == 0 && !input.oneSidedMm;
+           found.mergedPoints == 0 && found.badEdges == 0 && found.badVertices == 0 &&
+           found.crossingTriangles == 0 && !input.oneSidedMm;
 }
 
 /// Refuses a hole that is too wide before work begins, where a cap closes it. One that lies within
@@ -410,7 +410,8 @@ double widestHole(const MendOptions& options, const BoundingBox& box) {
 /// none: it has a closed piece or another fault.
 std::vector<MendedPlace> bordersOfSheets(const TriangleMesh& mesh, const MendInput& input,
                                          const MendStatistics& found) {
-    if (!hasBordersAlone(input, found)) return {};
+    if (!hasBordersAlone(input, found) || found.flippedTriangles > 0) return {};
+    if (!checkTopology(mesh).isManifold()) return {};  // holes share corners
     const ComponentLabels pieces = labelComponents(mesh);
     std::vector<std::uint8_t> isOpen(pieces.count);
     for (const auto& [a, b] : input.borders) isOpen[pieces.ofVertex[a]] = 1;

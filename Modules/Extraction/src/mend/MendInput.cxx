@@ -649,15 +649,14 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
     statistics.borderEdges = std::ssize(input.borders);
     Sheets sheets = makeSheetsFaceOneWay(input, trianglesAtEdges(input));
     std::vector<std::uint8_t> isTurned = sheets.isTurned;
-    for (const bool isByArea : {false, true}) {  // by area: caps that cross something otherwise
+    for (const bool isByArea : {false, true}) {  // by area: borders that have no flat cap
         if (!addCaps(input, isByArea) && isByArea) break;
         findEdges(input);
         sheets = makeSheetsFaceOneWay(input, trianglesAtEdges(input));
         turnSheetsOutward(input, sheets);
         for (std::size_t t = 0; t < isTurned.size(); ++t) isTurned[t] ^= sheets.isTurned[t];
         findCrossings(input);
-        if (!dropCrossingCaps(input)) break;
-        findEdges(input);
+        if (dropCrossingCaps(input)) findEdges(input);
     }
     statistics.flippedTriangles = std::count(isTurned.begin(), isTurned.end(), 1);
     countCrossing(input, statistics);
