@@ -135,13 +135,17 @@ void addVerdict(const MendRun& run, Report& report) {
     }
 }
 
+std::string outputName(const MendRun& run) {
+    return run.output.file.empty() ? "result" : baseName(run.output.file);
+}
+
 void addChecks(const MendRun& run, Report& report) {
     const std::string input = baseName(run.input.file);
     for (const std::string& fault : mendFaultTexts(run.statistics)) {
         report.checks.push_back({input, "sound", ReportOutcome::Noted, fault});
     }
     if (!run.isMended()) return;
-    const std::string output = run.output.file.empty() ? "result" : baseName(run.output.file);
+    const std::string output = outputName(run);
     const bool isOpen = !run.statistics.leftOpen.empty();
     report.checks.push_back(
         {output,
@@ -201,8 +205,7 @@ Report makeReport(const MendRun& run, const MeshFile& input, TriangleMesh shown)
         std::vector<double> distances = vertexDistancesMm(after, before);
         for (double& mm : distances) mm *= run.output.scale;
         report.valuesAre = "from the input";
-        report.surfaces.push_back(
-            {baseName(run.output.file), std::move(after), std::move(distances)});
+        report.surfaces.push_back({outputName(run), std::move(after), std::move(distances)});
         table.rows.push_back(
             figureCells({run.writesSurface() ? "written" : "result"}, rows, run.output));
     }

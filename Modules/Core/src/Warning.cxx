@@ -63,7 +63,7 @@ constexpr WarningCode kCodes[] = {
     {"overlap-unmeasured", "the overlap (Dice) could not be measured"},
     {"participants-not-read", "participants.tsv cannot be read, so no participant was looked up"},
     {"parts-dropped",
-     "parts too thin for the bound, a twentieth of the surface or more, were dropped"},
+     "parts too thin for the bound, more than a twentieth of the surface, were dropped"},
     {"pial-outside", "pial surfaces reach beyond the head model's inner skull"},
     {"pieces-inside-out", "pieces of the surface face inward where they should face outward"},
     {"pixdim-sform-differ",

@@ -37,7 +37,7 @@ public:
         std::vector<Indices> of;
         if (flatten(left)) of = triangulatePolygon(flat_);
         if (of.empty()) {
-            if (!areOnALine()) refuse(number, "crosses itself");
+            if (!areOnALine()) refuse(number, "crosses itself, or has parts without width");
             of = fan(left.size());
         }
         for (const auto& [a, b, c] : of) triangles.push_back({ring_[a], ring_[b], ring_[c]});
@@ -211,8 +211,8 @@ void Faces::addStrip(std::span<const VertexId> corners) {
     stripTriangles_ += static_cast<std::int64_t>(triangles_.size() - before);
 }
 
-void Faces::moveTo(MeshFile& file, bool keepsFaults) && {
-    noteLinesLeftOut(lines_, file.warnings);
+void Faces::moveTo(MeshFile& file, bool keepsFaults, std::int64_t lines) && {
+    noteLinesLeftOut(lines + lines_, file.warnings);
     if (strips_ > 0) {
         file.warnings.push_back(
             {"polygons-cut", counted(strips_, "triangle strip was", "triangle strips were") +

@@ -29,13 +29,12 @@ public:
 
     /// Moves the triangles to file.mesh, in the order of the file. Polygons are cut in the plane of
     /// best fit through them, by triangulatePolygon(); a warning says how many were cut, and how
-    /// far their corners lie off these planes.
+    /// far their corners lie off these planes. Polygons without area give triangles without area.
+    /// \param lines  that the file lists beside the faces; a note says how many were left out
     /// \pre    file.mesh has its points
-    /// Of a polygon without area, or with corners at one place, triangles have no area.
     /// \throws FileError  a polygon crosses itself, names a point twice or one that is not there
-    /// (but
-    ///         for keepsFaults, where it is cut anyhow), or has too many corners
-    void moveTo(MeshFile& file, bool keepsFaults) &&;
+    ///         (but for keepsFaults, where it is cut anyhow), or has too many corners
+    void moveTo(MeshFile& file, bool keepsFaults, std::int64_t lines = 0) &&;
 
 private:
     struct Polygon {

@@ -56,8 +56,7 @@ public:
         requireNoMoreSections();
         // 3D Slicer names the frame in the header, and takes fields of the file it read along
         file_.frame = marks_.frame() ? marks_.frame() : fieldMarks_.frame();
-        std::move(faces_).moveTo(file_, keepsFaults_);
-        noteLinesLeftOut(lines_, file_.warnings);
+        std::move(faces_).moveTo(file_, keepsFaults_, lines_);
         return std::move(file_);
     }
 

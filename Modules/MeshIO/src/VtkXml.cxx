@@ -653,9 +653,9 @@ MeshFile decodeVtkXml(std::string_view bytes, const MeshReadOptions& options) {
         handler.isDone() ? behindAppended(appended, reader.appendedEnd()) : handler.behind,
         reader.unpacking.warnings);
     file.warnings = std::move(reader.unpacking.warnings);
-    std::move(faces).moveTo(file, options.keepsFaults);
-    noteLinesLeftOut(countOr0(handler, "NumberOfVerts") + countOr0(handler, "NumberOfLines"),
-                     file.warnings);
+    std::move(faces).moveTo(
+        file, options.keepsFaults,
+        countOr0(handler, "NumberOfVerts") + countOr0(handler, "NumberOfLines"));
     return file;
 }
 

@@ -199,7 +199,7 @@ std::vector<std::optional<Side>> findSides(const Surface& surface, const Surface
                        ofPiece = std::max<std::int64_t>(1 << 21, 2 * kMostRayTests / pieces);
     const bool isInVain = 2 * expectedRayTests(surface, other, spokesmen) >
                           static_cast<double>(ofPiece) * static_cast<double>(pieces);
-    constexpr std::int64_t kPiecesInVain = 8;  // evenly spread, of 2^18 tests each
+    constexpr std::int64_t kPiecesInVain = 8;  // a sample, as not all can be known
     const std::int64_t most = isInVain ? 1 << 18 : ofPiece,
                        step = isInVain ? (pieces + kPiecesInVain - 1) / kPiecesInVain : 1;
     std::vector<std::optional<Side>> sides(spokesmen.size());

@@ -266,7 +266,7 @@ TEST(Polygons, OfDoubtfulShapeAreRefusedByNumber) {
         EXPECT_EQ(std::ranges::count(messages, messages[0]), std::ssize(messages));
         return messages[0].substr(0, messages[0].find(';'));
     };
-    EXPECT_EQ(refusal({0, 2, 1, 3}), "polygon 1 crosses itself");
+    EXPECT_EQ(refusal({0, 2, 1, 3}), "polygon 1 crosses itself, or has parts without width");
     EXPECT_EQ(refusal({0, 1, 2, 0, 3}), "polygon 1 names the point 0 twice");
     EXPECT_EQ(refusal({0, 1, 2, 8}), "polygon 1 uses point 8, must be 0 to 7");
 }

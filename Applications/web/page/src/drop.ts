@@ -68,7 +68,7 @@ const imagesOf = (files: InputFile[]): InputFile[] =>
  * files are put into one. \throws Error  they are several images */
 export function asInput(files: InputFile[]): { files: InputFile[]; path: string } {
   const first = files[0].path.split("/")[0], images = imagesOf(files);
-  if (files.every((file) => file.path.startsWith(`${first}/`))) return { files, path: first };
+  if (first !== "." && files.every((file) => file.path.startsWith(`${first}/`))) return { files, path: first };
   if (files.length === 1) return { files, path: files[0].path };
   if (images.length > 1) {
     throw new Error(`${images.map(({ path }) => path).join(" and ")} are ${images.length} scans: give one here`

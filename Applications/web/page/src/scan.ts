@@ -86,13 +86,11 @@ export class Scan {
       const input = asInput(given), { files } = input;
       path = input.path;
       const bytes = (await Promise.all(files.map(unpackedBytes))).reduce((sum, each) => sum + each, 0);
+      if (turn !== this.turn) throw new Cancelled();
       const need = kProgramBytes + bytes;
       if (need > kMostMemory) throw new Refused(tooLarge(path, need, "adaptiso-mesh, or adaptiso-giant"), 3);
       const { facts, shades } = await this.looker.open({ files, path, read, isLabels });
-      for (const each of this.tasks) {
-        each.cancel();
-        each.part(".result").hidden = true;
-      }
+      for (const each of this.tasks) each.clear();
       Object.assign(this, { facts, files, path, read, isReading: false });
       this.tell(facts);
       for (const listener of this.listeners) listener();

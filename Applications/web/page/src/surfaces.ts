@@ -9,10 +9,6 @@ import type { Color, Surface } from "./painter";
 
 const kColor: Color = [240, 190, 120], kOther: Color = [110, 190, 240];
 
-async function bytesOf(file: InputFile): Promise<Uint8Array> {
-  return file.data instanceof Blob ? new Uint8Array(await file.data.arrayBuffer()) : file.data.slice();
-}
-
 /** A tab of meshes: what they share. */
 class Meshes {
   readonly task: Task;
@@ -23,7 +19,7 @@ class Meshes {
   constructor(id: string, readonly page: Page, most: number, make: () => Promise<void>) {
     this.task = new Task(id, page);
     this.looker = page.engine.looker();
-    takeFiles(byId(`${id}-drop`), (given) => { this.taking = this.taking.then(() => this.take(given, most)); });
+    takeFiles(byId(`${id}-drop`), (given) => { this.taking = this.taking.then(() => this.take(given, most)).catch((error) => this.task.refuse(this.lineOf(error))); });
     byId(`${id}-form`).addEventListener("submit", (event) => { event.preventDefault(); void this.taking.then(make); });
   }
   private taking = Promise.resolve();
@@ -40,6 +36,7 @@ class Meshes {
       }
     }
     if (good.length > 0) {
+      this.task.cancel();
       this.files.push(...good);
       this.files.splice(0, Math.max(0, this.files.length - most));
       await this.changed();
@@ -72,10 +69,13 @@ class Meshes {
 
   private readonly opened = new WeakMap<Blob | Uint8Array, Promise<OpenedMesh>>();
   async open(file: InputFile): Promise<OpenedMesh> {
-    const found = this.opened.get(file.data) ?? bytesOf(file).then((data) =>
-      this.looker.mesh({ path: `shown/${file.path.split("/").at(-1)}`, data }, `adaptiso-${this.task.id}`));
-    this.opened.set(file.data, found);
-    return found;
+    const found = this.opened.get(file.data);
+    if (found !== undefined) return found;
+    const data = file.data instanceof Blob ? file.data : file.data.slice();
+    const opened = this.looker.mesh({ path: `shown/${file.path.split("/").at(-1)}`, data }, `adaptiso-${this.task.id}`);
+    this.opened.set(file.data, opened);
+    opened.catch(() => this.opened.delete(file.data));
+    return opened;
   }
 
   /** Why it can't be read. */

@@ -34,7 +34,8 @@ const kFields = new Set(["iso", "max-error", "triangles", "smooth", "largest", "
  * \param names  of files, which may look like either
  */
 export function hintOf(text: string, names: string[]): string {
-  const line = names.reduce((rest, name) => rest.replaceAll(name, ""), text);
+  const escaped = names.map((name) => name.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).sort((a, b) => b.length - a.length);
+  const line = escaped.reduce((rest, name) => rest.replace(new RegExp(`(?<![\\w-])${name}(?![\\w-])`, "g"), ""), text);
   const missing = [...new Set([...line.matchAll(/--([a-z][a-z0-9-]+)/g)].map(([, name]) => name))].filter((name) => !kFields.has(name));
   const program = /^adaptiso-(\w+):/.exec(line)?.[1];
   return [...(missing.length === 0 || program === undefined ? []
@@ -61,6 +62,14 @@ export class Task {
     const found = this.section.querySelector<T>(selector);
     if (found === null) throw new Error(`no ${selector} in #${this.id}`);
     return found;
+  }
+
+  private turn = 0;
+  /** Ends the run, and takes its result away: its input is another one. */
+  clear(): void {
+    ++this.turn;
+    this.cancel();
+    this.part(".result").hidden = true;
   }
 
   get isRunning(): boolean { return this.job !== undefined; }
@@ -135,7 +144,9 @@ export class Task {
   /** The verdict, the command, and the files to save. */
   async show(title: string, run: Run, done: RunResult, files: OutputFile[], details: (Node | string)[] = []): Promise<void> {
     const command = [run.program, ...(run.shownArgs ?? run.args).map(quoted)].join(" ");
+    const { turn } = this;
     const sums = await Promise.all(files.map((file) => sha256(file.bytes)));
+    if (turn !== this.turn) return;
     const verdict = [title, `adaptiso ${kVersion}`,
       ...(files.length === 1 ? [`SHA-256 ${sums[0]}`] : [])].join("; ");
     const warnings = (reportOf(done)?.warnings ?? []) as ProgramWarning[];

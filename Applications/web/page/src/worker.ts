@@ -79,7 +79,7 @@ async function run(id: number, request: RunRequest): Promise<void> {
   });
   for (const folder of request.folders) instance.FS.mkdirTree(`${kFolder}/${folder}`);
   for (const file of request.files) await put(instance.FS, file);
-  const given = new Set(request.files.map((file) => file.path.replace(/^\.\//, "")));
+  const given = new Set(request.files.map((file) => file.path.replace(/(^|\/)\.\//, "$1")));
   const begin = performance.now();
   const exitCode = instance.callMain(request.args);
   const seconds = (performance.now() - begin) / 1000;
