@@ -122,7 +122,8 @@ void printOutput(std::ostream& out, const MendRun& run) {
 }
 
 void addVerdict(const MendRun& run, Report& report) {
-    report.title = baseName(run.input.file) + " mended";
+    const std::string input = baseName(run.input.file);
+    report.title = run.isMended() ? input + " mended" : "Mending of " + input;
     report.verdict = run.isMended() ? ReportVerdict::Passed : ReportVerdict::Failed;
     if (!run.isMended()) {
         report.headline = "Not mended: " + run.refusal + ".";
