@@ -142,7 +142,7 @@ std::filesystem::path surfaceFile(const std::filesystem::path& output,
     return isFolder(output) ? output / input.filename() : output;
 }
 
-PageFrame pageFrame(const MeshFile& input) {
+ShownFrame shownFrame(const MeshFile& input) {
     const CoordinateFrame frame = input.frame.value_or(CoordinateFrame::Ras);
     if (!needsVolume(frame) || input.volume) {
         return {inverse(lpsToFrame(frame, input.volume)),

@@ -107,12 +107,12 @@ std::filesystem::path surfaceFile(const std::filesystem::path& output,
                                   const std::filesystem::path& input, const std::string& suffix);
 
 /// A frame that a page can show: LPS mm, or what is like it but for where it lies.
-struct PageFrame {
+struct ShownFrame {
     AffineTransform toLps;
     std::string name;  ///< the frame in which points are reported
 };
 
-PageFrame pageFrame(const MeshFile& input);
+ShownFrame shownFrame(const MeshFile& input);
 
 /// One run of a program that reads a surface and writes it changed.
 struct SurfaceChangeRun : ProgramRun {

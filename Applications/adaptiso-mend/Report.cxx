@@ -189,7 +189,7 @@ Report makeReport(const MendRun& run, const MeshFile& input, TriangleMesh shown)
     addOptions(mendOptions(), run.command.aim, report.options);
     addChecks(run, report);
     report.notes = mendPlaceTexts(run.statistics);
-    const PageFrame frame = pageFrame(input);
+    const ShownFrame frame = shownFrame(input);
     report.frame = frame.name;
     for (const auto& [what, place] : mendPlaces(run.statistics)) {
         report.spots.push_back({what + ", " + formatMeasure(place.spanMm) + " mm wide",

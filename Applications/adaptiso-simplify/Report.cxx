@@ -156,7 +156,7 @@ ReportTable surfaceTable(const SimplifyRun& run) {
     return table;
 }
 
-void addSpots(const SimplifyRun& run, const TriangleMesh& input, const PageFrame& frame,
+void addSpots(const SimplifyRun& run, const TriangleMesh& input, const ShownFrame& frame,
               Report& report) {
     const std::string in = " in " + baseName(run.input.file);
     for (const Finding& finding : run.findings) {
@@ -217,7 +217,7 @@ Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh sh
     addOptions(aimOptions(AimedSurface::Mesh), run.command.aim, report.options);
     addOptions(simplifyOptions(), run.command.aim, report.options);
     addFindings(run, report);
-    const PageFrame frame = pageFrame(input);
+    const ShownFrame frame = shownFrame(input);
     report.frame = frame.name;
     TriangleMesh before = transformed(input.mesh, frame.toLps);
     addSpots(run, before, frame, report);
