@@ -11,6 +11,7 @@
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Phrases.h"
+#include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
@@ -272,6 +273,26 @@ void SurfaceChangeRun::warnOfRounding(double reachedMm, double maxErrorMm) {
     const auto warning = roundingWarning(baseName(output.file), reachedMm,
                                          maxErrorMm * output.scale, roundingMm, *output.format);
     if (warning) warnings.push_back(*warning);
+}
+
+void SurfaceChangeRun::show(TriangleMesh before, const TriangleMesh& result,
+                            const ShownFrame& frame, Report& report) const {
+    report.frame = frame.name;
+    const auto& rows = summaryFigures();
+    ReportTable table{
+        "Surfaces", figureColumns({"Surface"}, rows), {figureCells({"read"}, rows, input)}};
+    if (result.triangles.empty()) {
+        report.surfaces.push_back({baseName(input.file), std::move(before)});
+    } else {
+        TriangleMesh after = transformed(result, frame.toLps);
+        std::vector<double> distances = vertexDistancesMm(after, before);
+        for (double& mm : distances) mm *= output.scale;
+        report.valuesAre = "from the input";
+        report.surfaces.push_back({output.file.empty() ? "result" : baseName(output.file),
+                                   std::move(after), std::move(distances)});
+        table.rows.push_back(figureCells({bytes > 0 ? "written" : "result"}, rows, output));
+    }
+    report.tables.push_back(std::move(table));
 }
 
 int SurfaceChangeRun::finish(bool isWritten, const std::function<std::string()>& makeJson,

@@ -22,6 +22,7 @@
 #include "adaptiso/MeshIO/Formats.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/Report/Report.h"
 #include "adaptiso/SurfacePipeline/Verification.h"
 
 namespace adaptiso {
@@ -119,7 +120,7 @@ struct SurfaceChangeRun : ProgramRun {
     using ProgramRun::ProgramRun;
 
     SurfaceSummary input{};
-    SurfaceSummary output{};                     ///< of the result; 0 triangles: there is none
+    SurfaceSummary output{};                     ///< no triangles: there is no result
     double roundingMm = 0;                       ///< largest move of a point by the output's digits
     std::optional<Verification> verification{};  ///< of the surface as written
     std::uintmax_t bytes = 0;                    ///< of the output
@@ -150,6 +151,12 @@ struct SurfaceChangeRun : ProgramRun {
     void requireDigits(double maxErrorMm) const;
     /// Warns where they take `reachedMm` noticeably beyond the bound.
     void warnOfRounding(double reachedMm, double maxErrorMm);
+
+    /// Puts the result into a report, coloured by its distance from the input, and both into a
+    /// table. \param before  the input, in the page's frame
+    /// \param result  in the input's frame; no triangles: there is none, and the input is shown
+    void show(TriangleMesh before, const TriangleMesh& result, const ShownFrame& frame,
+              Report& report) const;
 
     /// Everything from the reports on. \return the exit code
     int finish(bool isWritten, const std::function<std::string()>& makeJson,

@@ -230,7 +230,7 @@ int runMend(const MendCommand& command) {
     }
     if (!run.writesSurface()) run.dropOutputs();
     if (command.report.isWanted()) {
-        run.writePage([&] { return makeReport(run, input, std::move(shown)); });
+        run.writePage([&] { return makeReport(run, input, shown); });
     }
     return run.finish(
         run.writesSurface(), [&] { return jsonReport(run); },

@@ -11,7 +11,6 @@
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Json/OptionsJson.h"
-#include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SurfacePipeline/MendJson.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
@@ -136,17 +135,13 @@ void addVerdict(const MendRun& run, Report& report) {
     }
 }
 
-std::string outputName(const MendRun& run) {
-    return run.output.file.empty() ? "result" : baseName(run.output.file);
-}
-
 void addChecks(const MendRun& run, Report& report) {
     const std::string input = baseName(run.input.file);
     for (const std::string& fault : mendFaultTexts(run.statistics)) {
         report.checks.push_back({input, "sound", ReportOutcome::Noted, fault});
     }
     if (!run.isMended()) return;
-    const std::string output = outputName(run);
+    const std::string output = run.output.file.empty() ? "result" : baseName(run.output.file);
     const bool isOpen = !run.statistics.leftOpen.empty();
     report.checks.push_back(
         {output,
@@ -181,7 +176,7 @@ void printReport(std::ostream& out, const MendRun& run) {
     printTimes(out, run.timer);
 }
 
-Report makeReport(const MendRun& run, const MeshFile& input, TriangleMesh shown) {
+Report makeReport(const MendRun& run, const MeshFile& input, const TriangleMesh& shown) {
     Report report;
     addVerdict(run, report);
     report.inputs.push_back(
@@ -190,27 +185,11 @@ Report makeReport(const MendRun& run, const MeshFile& input, TriangleMesh shown)
     addChecks(run, report);
     report.notes = mendPlaceTexts(run.statistics);
     const ShownFrame frame = shownFrame(input);
-    report.frame = frame.name;
     for (const auto& [what, place] : mendPlaces(run.statistics)) {
         report.spots.push_back({what + ", " + formatMeasure(place.spanMm) + " mm wide",
                                 frame.toLps(place.middleMm), false});
     }
-    TriangleMesh before = transformed(input.mesh, frame.toLps);
-    const auto& rows = summaryFigures();
-    ReportTable table{
-        "Surfaces", figureColumns({"Surface"}, rows), {figureCells({"read"}, rows, run.input)}};
-    if (shown.triangles.empty()) {
-        report.surfaces.push_back({baseName(run.input.file), std::move(before)});
-    } else {
-        TriangleMesh after = transformed(shown, frame.toLps);
-        std::vector<double> distances = vertexDistancesMm(after, before);
-        for (double& mm : distances) mm *= run.output.scale;
-        report.valuesAre = "from the input";
-        report.surfaces.push_back({outputName(run), std::move(after), std::move(distances)});
-        table.rows.push_back(
-            figureCells({run.writesSurface() ? "written" : "result"}, rows, run.output));
-    }
-    report.tables.push_back(std::move(table));
+    run.show(transformed(input.mesh, frame.toLps), shown, frame, report);
     return report;
 }
 

@@ -64,6 +64,6 @@ void printReport(std::ostream& out, const MendRun& run);
 /// The report that the page shows.
 /// \param input  as read
 /// \param shown  the result, in the input's frame; no triangles: it can't be mended as asked
-Report makeReport(const MendRun& run, const MeshFile& input, TriangleMesh shown);
+Report makeReport(const MendRun& run, const MeshFile& input, const TriangleMesh& shown);
 
 }  // namespace adaptiso::mender

@@ -258,7 +258,7 @@ int runSimplify(const SimplifyCommand& command) {
     }
     if (!run.writesSurface()) run.dropOutputs();
     if (command.report.isWanted()) {
-        run.writePage([&] { return makeReport(run, input, std::move(shown)); });
+        run.writePage([&] { return makeReport(run, input, shown); });
     }
     if (run.failsSoundness()) run.verdict = {kExitCheckFailed, refusal(run)};
     return run.finish(

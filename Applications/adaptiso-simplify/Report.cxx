@@ -9,7 +9,6 @@
 #include "Run.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Json/OptionsJson.h"
-#include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::simplifier {
@@ -148,14 +147,6 @@ void addFindings(const SimplifyRun& run, Report& report) {
             " mm proved");
 }
 
-ReportTable surfaceTable(const SimplifyRun& run) {
-    const auto& rows = summaryFigures();
-    ReportTable table{
-        "Surfaces", figureColumns({"Surface"}, rows), {figureCells({"read"}, rows, run.input)}};
-    if (!run.failsSoundness()) table.rows.push_back(figureCells({"written"}, rows, run.output));
-    return table;
-}
-
 void addSpots(const SimplifyRun& run, const TriangleMesh& input, const ShownFrame& frame,
               Report& report) {
     const std::string in = " in " + baseName(run.input.file);
@@ -210,7 +201,7 @@ void printReport(std::ostream& out, const SimplifyRun& run) {
     printTimes(out, run.timer);
 }
 
-Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh shown) {
+Report makeReport(const SimplifyRun& run, const MeshFile& input, const TriangleMesh& shown) {
     Report report;
     addVerdict(run, report);
     addInputs(run, report);
@@ -218,20 +209,9 @@ Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh sh
     addOptions(simplifyOptions(), run.command.aim, report.options);
     addFindings(run, report);
     const ShownFrame frame = shownFrame(input);
-    report.frame = frame.name;
     TriangleMesh before = transformed(input.mesh, frame.toLps);
     addSpots(run, before, frame, report);
-    if (run.failsSoundness()) {
-        report.surfaces.push_back({baseName(run.input.file), std::move(before)});
-    } else {
-        TriangleMesh after = transformed(shown, frame.toLps);
-        std::vector<double> distances = vertexDistancesMm(after, before);
-        for (double& mm : distances) mm *= run.output.scale;
-        report.valuesAre = "from the input";
-        report.surfaces.push_back(
-            {baseName(run.output.file), std::move(after), std::move(distances)});
-    }
-    report.tables.push_back(surfaceTable(run));
+    run.show(std::move(before), shown, frame, report);
     return report;
 }
 

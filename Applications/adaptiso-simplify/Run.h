@@ -110,6 +110,6 @@ void printReport(std::ostream& out, const SimplifyRun& run);
 /// The report that the page shows.
 /// \param input  as read
 /// \param shown  the result, in the input's frame; empty: the surface was refused
-Report makeReport(const SimplifyRun& run, const MeshFile& input, TriangleMesh shown);
+Report makeReport(const SimplifyRun& run, const MeshFile& input, const TriangleMesh& shown);
 
 }  // namespace adaptiso::simplifier

@@ -254,6 +254,18 @@ class Refusals(MendTest):
         self.mend("cup.off", "--max-error", 1, "--max-hole", 120, "-o", "closed.off")
         self.assertTrue(self.check("closed.off")["passed"])
 
+    def test_a_sheet_that_is_dropped_is_warned_of(self):
+        square = [(50, 0, 0), (90, 0, 0), (90, 40, 0), (50, 40, 0)]
+        sheet = square + square, [(0, 1, 2), (0, 2, 3), (6, 5, 4), (7, 6, 4)]  # both its sides
+        for size, codes in ((10, ["parts-dropped"]), (200, [])):
+            self.write("both.off", together(cube((-size, 0, 0), (0, size, size)), sheet))
+            report = self.mend("both.off", "--max-error", 0.1, "-o", "out.off")
+            self.assertEqual([each["code"] for each in report["warnings"]], codes)
+            self.assertAlmostEqual(report["output"]["areaMm2"], 6 * size * size, 3)
+        self.write("both.off", together(cube((-10, 0, 0), (0, 10, 10)), sheet))
+        done = self.run_mend("both.off", "--strict", "-o", "strict.off")
+        self.assertEqual((done.returncode, self.path("strict.off").exists()), (CHECK_FAILED, False), done.stderr)
+
     def test_boxes_that_share_an_edge_by_place_are_none_in_stl(self):
         self.write("touch.off", together(cube((0, 0, 0), (1, 1, 1)), cube((1, 1, 0), (2, 2, 1))))
         self.mend("touch.off", "-o", "same.off")
@@ -322,8 +334,9 @@ class Reports(MendTest):
         self.mend("two.off", "--max-error", 1, "-o", "one.off")
         self.assertEqual(self.path("one.off").read_bytes(), self.path("out/two.off").read_bytes())
         before = self.contents()
-        self.assertEqual(self.run_mend(*names, "--dry-run").returncode, CHECK_FAILED)
-        self.assertEqual(self.contents(), before)
+        for output in ((), ("-o", "out/"), ("-o", "new/")):
+            self.assertEqual(self.run_mend(*names, "--dry-run", *output).returncode, CHECK_FAILED)
+            self.assertEqual(self.contents(), before)
         self.stays_out(USAGE, "--output is missing", *names)
 
     def test_is_the_same_whatever_the_number_of_threads(self):

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "Bytes.h"
@@ -31,16 +30,12 @@ public:
     std::vector<Indices> cut(std::int64_t number, std::span<const VertexId> corners) {
         requirePlausible(number, corners);
         if (!areThere(number, corners)) return fan(corners.size());
-        std::vector<Indices> triangles = cutCoincident(corners);
-        std::vector<VertexId> left;
-        for (const std::uint32_t n : ring_) left.push_back(corners[n]);
-        std::vector<Indices> of;
-        if (flatten(left)) of = triangulatePolygon(flat_);
-        if (of.empty()) {
+        std::vector<Indices> triangles;
+        if (flatten(corners)) triangles = triangulatePolygon(flat_);
+        if (triangles.empty()) {
             if (!areOnALine()) refuse(number, "crosses itself, or has parts without width");
-            of = fan(left.size());
+            triangles = fan(corners.size());
         }
-        for (const auto& [a, b, c] : of) triangles.push_back({ring_[a], ring_[b], ring_[c]});
         return triangles;
     }
 
@@ -48,25 +43,6 @@ public:
     double largestDistance() const { return largestDistance_; }
 
 private:
-    /// Cuts off corners at the place of the one before, as triangles without area. \post ring_ has
-    /// the others
-    std::vector<Indices> cutCoincident(std::span<const VertexId> corners) {
-        ring_.resize(corners.size());
-        std::iota(ring_.begin(), ring_.end(), 0U);
-        const auto place = [&](std::size_t n) { return points_[corners[ring_[n % ring_.size()]]]; };
-        std::vector<Indices> triangles;
-        for (std::size_t n = 0; n < ring_.size() && ring_.size() > 3;) {
-            if (place(n) != place(n + 1)) {
-                ++n;
-                continue;
-            }
-            const std::size_t next = (n + 1) % ring_.size(), after = (n + 2) % ring_.size();
-            triangles.push_back({ring_[n], ring_[next], ring_[after]});
-            ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(next));
-        }
-        return triangles;
-    }
-
     /// They lie on a line, but for rounding. \pre flatten()
     bool areOnALine() const {
         constexpr double kRounding = 3e-5;  // of coordinates with five digits
@@ -166,7 +142,6 @@ private:
     const std::vector<Vec3>& points_;
     bool keepsFaults_;
     double largestDistance_ = 0;
-    std::vector<std::uint32_t> ring_;  ///< corners that are left, by index
     std::vector<VertexId> sorted_;
     std::vector<Vec3> local_;
     std::vector<Point2> flat_;

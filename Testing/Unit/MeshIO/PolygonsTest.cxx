@@ -287,7 +287,7 @@ TEST(Polygons, WithoutAreaAreKeptAsTrianglesWithoutArea) {
         first.erase(first.begin());
         return first;
     };
-    EXPECT_EQ(trianglesOf({0, 8, 1, 9}), (std::vector<Triangle>{{9, 0, 8}, {8, 1, 9}}));
+    EXPECT_EQ(trianglesOf({0, 8, 1, 9}), (std::vector<Triangle>{{0, 8, 1}, {0, 1, 9}}));
     EXPECT_EQ(trianglesOf({0, 9, 1, 2}), (std::vector<Triangle>{{0, 9, 1}, {2, 0, 1}}));
     EXPECT_EQ(trianglesOf({0, 0, 1, 2}), (std::vector<Triangle>{{0, 1, 2}}));
     EXPECT_EQ(trianglesOf({0, 0, 1, 1}), (std::vector<Triangle>{}));

@@ -27,10 +27,11 @@ export class Scan {
   constructor(private readonly page: Page) { this.looker = page.engine.looker(); }
 
   private readonly tasks: Task[] = [];
-  /** A tab's that works on the image: where another one is opened, its run ends and its result goes. */
+  /** The task of a tab that works on the image. Opening another image ends its run and hides its result. */
   taskOf(id: string, page: Page): Task {
-    this.tasks.push(new Task(id, page));
-    return this.tasks[this.tasks.length - 1];
+    const task = new Task(id, page);
+    this.tasks.push(task);
+    return task;
   }
 
   /** An image is being read; the one before is there until then. */

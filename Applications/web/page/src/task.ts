@@ -26,14 +26,14 @@ export interface Run {
 
 /** Options that the page has fields or choices for. */
 const kFields = new Set(["iso", "max-error", "triangles", "smooth", "largest", "fill-cavities", "coordinates", "volume-index", "series",
-  "list-series", "max-hole", "ball", "meg", "help", "brain-mask", "tissue", "preset", "layers", "vertices", "fif", "gifti", "labels", "names", "format", "file-names", "nested",
-  "profile", "t1", "ct", "output"]);
+  "list-series", "max-hole", "ball", "meg", "help", "brain-mask", "tissue", "preset", "layers", "vertices", "fif", "gifti", "labels",
+  "names", "format", "file-names", "nested", "profile", "t1", "ct", "output"]);
 
 /**
- * What to do about a program's line in a page: options that it has not, and commands of a shell.
- * \param names  of files, which may look like either
+ * The advice for a program's message: how to give options that the page lacks, how to unpack files.
+ * \param names  of files; words in them are no options
  */
-export function hintOf(text: string, names: string[]): string {
+function hintOf(text: string, names: string[]): string {
   const escaped = names.map((name) => name.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")).sort((a, b) => b.length - a.length);
   const line = escaped.reduce((rest, name) => rest.replace(new RegExp(`(?<![\\w-])${name}(?![\\w-])`, "g"), ""), text);
   const missing = [...new Set([...line.matchAll(/--([a-z][a-z0-9-]+)/g)].map(([, name]) => name))].filter((name) => !kFields.has(name));
@@ -113,7 +113,7 @@ export class Task {
       const error = done.exitCode === 0 ? undefined : lines.at(-1);
       if (error !== undefined) {
         const names = run.files.map(({ path }) => path).filter((path) => path !== "");
-        const moved = names.filter((path) => /^(names|mask)\//.test(path));  // folders that nobody gave
+        const moved = names.filter((path) => /^(names|mask)\//.test(path));  // into folders of the page
         this.refuse(moved.reduce((line, path) => line.replaceAll(path, path.slice(path.indexOf("/") + 1)), error), [],
           names.map((path) => path.split("/").at(-1) ?? path));
       }

@@ -28,7 +28,7 @@ std::uint64_t endsKey(VertexId a, VertexId b) {
 }
 
 /// The triangulation of a ring of the least area in space [Barequet1995], of triangles with an area
-/// and edges that the mesh has not. Empty where there is none.
+/// and edges that are not in the mesh. Empty if no such triangulation exists.
 /// \param isTaken   whether an edge between two points is the mesh's
 /// \param isBarred  whether a triangle is not to be taken, by places in the ring, ascending
 template <class IsTaken, class IsBarred>
@@ -283,6 +283,7 @@ std::vector<std::vector<VertexId>> borderRings(const MendInput& input) {
 bool addCaps(MendInput& input, bool isByArea) {
     TriangleMesh& mesh = input.mesh;
     const auto rings = borderRings(input);
+    if (rings.empty()) return false;
     std::vector<std::uint8_t> isOnRing(mesh.points.size());
     for (const auto& ring : rings) {
         for (const VertexId v : ring) isOnRing[v] = 1;

@@ -268,8 +268,10 @@ std::vector<MendedPlace> borderPlaces(const std::vector<Vec3>& points, const Giv
 /// more than a crack, which the lattice closes.
 void requireNarrowBorders(const MendInput& input, const MendStatistics& found, double boundMm,
                           double maxHoleMm) {
-    if (!hasBordersAlone(input, found) || labelComponents(input.mesh).count != 1) return;
-    for (const auto& ring : detail::borderRings(input)) {
+    const auto rings = detail::borderRings(input);
+    if (rings.empty() || !hasBordersAlone(input, found)) return;
+    if (labelComponents(input.mesh).count != 1) return;
+    for (const auto& ring : rings) {
         std::vector<Vec3> points;
         Vec3 area;
         for (const VertexId v : ring) {

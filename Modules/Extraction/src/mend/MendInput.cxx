@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <tuple>
 
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
@@ -14,6 +13,7 @@
 #include "adaptiso/MeshQuality/CrossingSearch.h"
 #include "adaptiso/MeshQuality/InsideTest.h"
 #include "mend/BorderCaps.h"
+#include "mend/DoubledTriangles.h"
 #include "repair/FlatTriangles.h"
 
 namespace adaptiso::detail {
@@ -30,21 +30,6 @@ std::vector<std::int64_t> edgeUses(const MendInput& input) {
         for (const std::uint32_t e : edges) ++uses[e];
     }
     return uses;
-}
-
-/// Number of the first point at the place of each.
-std::vector<VertexId> placesOf(const std::vector<Vec3>& points) {
-    std::vector<VertexId> order(points.size()), place(points.size());
-    std::iota(order.begin(), order.end(), VertexId{0});
-    std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
-        const Vec3 &p = points[a], &q = points[b];
-        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-    });
-    for (std::size_t n = 0; n < order.size(); ++n) {
-        const bool isSame = n > 0 && points[order[n]] == points[order[n - 1]];
-        place[order[n]] = isSame ? place[order[n - 1]] : order[n];
-    }
-    return place;
 }
 
 std::vector<VertexId> borderPoints(const MendInput& input) {
@@ -82,7 +67,7 @@ std::vector<VertexId> themselves(std::size_t count) {
 
 /// Points of borders become the first one at their place.
 std::int64_t mergeBorderPoints(MendInput& input) {
-    const std::vector<VertexId> place = placesOf(input.mesh.points);
+    const std::vector<VertexId> place = firstAtPlace(input.mesh.points);
     std::vector<VertexId> first(place.size(), -1), becomes = themselves(place.size());
     for (const VertexId v : borderPoints(input)) {
         VertexId& of = first[place[v]];
@@ -168,179 +153,6 @@ std::int64_t mergeNearBorderPoints(MendInput& input, double reachMm, double& mov
     return renumber(input, becomes);
 }
 
-/// Triangles at one place.
-struct Doubled {
-    Triangle places;                   ///< ascending
-    std::vector<std::size_t> numbers;  ///< ascending
-    std::vector<int> facings;  ///< 1 or -1: whether an even number of swaps makes them ascend
-    int facing = 0;            ///< their sum
-};
-
-std::vector<Doubled> collectDoubled(const std::vector<Vec3>& points,
-                                    const std::vector<Triangle>& triangles) {
-    const std::vector<VertexId> place = placesOf(points);
-    struct Placed {
-        Triangle places;
-        std::size_t number;
-        int facing;
-        bool operator<(const Placed& o) const {
-            return places != o.places ? places < o.places : number < o.number;
-        }
-    };
-    std::vector<Placed> all;
-    all.reserve(triangles.size());
-    for (std::size_t n = 0; n < triangles.size(); ++n) {
-        Triangle t;
-        for (int i = 0; i < 3; ++i) t[i] = place[triangles[n][i]];
-        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-        const int facing = t[1] < t[2] ? 1 : -1;
-        if (facing < 0) std::swap(t[1], t[2]);
-        all.push_back({t, n, facing});
-    }
-    std::sort(all.begin(), all.end());
-    std::vector<Doubled> sets;
-    for (const Placed& placed : all) {
-        if (sets.empty() || sets.back().places != placed.places)
-            sets.emplace_back().places = placed.places;
-        Doubled& set = sets.back();
-        set.numbers.push_back(placed.number);
-        set.facings.push_back(placed.facing);
-        set.facing += placed.facing;
-    }
-    return sets;
-}
-
-/// Finds the walls of solids that touch. A set with as many triangles facing either way is a wall,
-/// or a surface given twice. Connected sets are walls if an even number of other sets meets at most
-/// of the edges where they end: two solids go on from there.
-std::vector<std::uint8_t> findWalls(const std::vector<Doubled>& sets) {
-    struct EdgeOfSet {
-        VertexId a, b;
-        std::size_t set;
-        bool operator<(const EdgeOfSet& o) const {
-            return std::tie(a, b, set) < std::tie(o.a, o.b, o.set);
-        }
-    };
-    std::vector<EdgeOfSet> edges;
-    edges.reserve(3 * sets.size());
-    for (std::size_t n = 0; n < sets.size(); ++n) {
-        const auto& [a, b, c] = sets[n].places;
-        edges.insert(edges.end(), {{a, b, n}, {b, c, n}, {a, c, n}});
-    }
-    std::sort(edges.begin(), edges.end());
-    DisjointSets regions(std::ssize(sets));
-    std::vector<std::int64_t> votes(sets.size());
-    struct Vote {
-        std::size_t set;
-        int isEven;
-    };
-    std::vector<Vote> cast;
-    for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
-        std::size_t others = 0;
-        std::optional<std::size_t> first;
-        for (end = begin;
-             end < edges.size() && edges[end].a == edges[begin].a && edges[end].b == edges[begin].b;
-             ++end) {
-            const Doubled& set = sets[edges[end].set];
-            if (set.facing != 0) {
-                ++others;
-            } else if (first) {
-                regions.join(static_cast<std::int64_t>(*first),
-                             static_cast<std::int64_t>(edges[end].set));
-            } else {
-                first = edges[end].set;
-            }
-        }
-        if (first && others > 0) cast.push_back({*first, others % 2 == 0 ? 1 : -1});
-    }
-    for (const auto& [set, isEven] : cast) {
-        votes[regions.find(static_cast<std::int64_t>(set))] += isEven;
-    }
-    std::vector<std::uint8_t> isWall(sets.size());
-    for (std::size_t n = 0; n < sets.size(); ++n) {
-        isWall[n] = sets[n].facing == 0 && votes[regions.find(static_cast<std::int64_t>(n))] > 0;
-    }
-    return isWall;
-}
-
-/// The parts that hang together by points, and of each whether as many triangles run one way along
-/// each of its edges as the other, by a sum: of all, and of those that are not dropped.
-struct Balance {
-    std::vector<std::int64_t> part;  ///< of each triangle
-    std::vector<std::uint8_t> hasAll, hasKept;
-};
-
-Balance balanceOf(std::size_t pointCount, const std::vector<Triangle>& triangles,
-                  const std::vector<std::uint8_t>& isDropped) {
-    DisjointSets parts(static_cast<std::int64_t>(pointCount));
-    struct HalfEdge {
-        VertexId a, b;
-        int way;
-        std::uint8_t isDropped;
-    };
-    std::vector<HalfEdge> halves;
-    halves.reserve(3 * triangles.size());
-    for (std::size_t n = 0; n < triangles.size(); ++n) {
-        const Triangle& t = triangles[n];
-        for (std::size_t i = 0; i < 3; ++i) {
-            const VertexId a = t[i], b = t[(i + 1) % 3];
-            parts.join(a, b);
-            halves.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1, isDropped[n]});
-        }
-    }
-    std::sort(halves.begin(), halves.end(), [](const HalfEdge& one, const HalfEdge& other) {
-        return std::tie(one.a, one.b) < std::tie(other.a, other.b);
-    });
-    Balance balance{
-        {}, std::vector<std::uint8_t>(pointCount, 1), std::vector<std::uint8_t>(pointCount, 1)};
-    for (std::size_t begin = 0, end; begin < halves.size(); begin = end) {
-        int all = 0, kept = 0;
-        for (end = begin; end < halves.size() && halves[end].a == halves[begin].a &&
-                          halves[end].b == halves[begin].b;
-             ++end) {
-            all += halves[end].way;
-            if (halves[end].isDropped == 0) kept += halves[end].way;
-        }
-        const std::int64_t part = parts.find(halves[begin].a);
-        if (all != 0) balance.hasAll[part] = 0;
-        if (kept != 0) balance.hasKept[part] = 0;
-    }
-    for (const Triangle& t : triangles) balance.part.push_back(parts.find(t[0]));
-    return balance;
-}
-
-/// Triangles to drop of those at one place: all but one that faces as more of them do; of walls of
-/// solids that touch all. A closed part that this would open keeps its own.
-/// \param gone  gets one of each wall
-std::vector<std::uint8_t> findDoubled(const std::vector<Vec3>& points,
-                                      const std::vector<Triangle>& triangles,
-                                      std::vector<std::size_t>& gone) {
-    const std::vector<Doubled> sets = collectDoubled(points, triangles);
-    const std::vector<std::uint8_t> isWall = findWalls(sets);
-    std::vector<std::uint8_t> isDropped(triangles.size(), 1);
-    std::vector<std::size_t> copies;
-    for (std::size_t n = 0; n < sets.size(); ++n) {
-        const Doubled& set = sets[n];
-        if (isWall[n] != 0) {
-            gone.push_back(set.numbers[0]);
-            continue;
-        }
-        std::size_t keeps = 0;
-        while (set.facing * set.facings[keeps] < 0) ++keeps;
-        for (std::size_t k = 0; k < set.numbers.size(); ++k) {
-            if (k != keeps) copies.push_back(set.numbers[k]);
-        }
-        isDropped[set.numbers[keeps]] = 0;
-    }
-    if (copies.empty()) return isDropped;
-    const Balance balance = balanceOf(points.size(), triangles, isDropped);
-    for (const std::size_t n : copies) {
-        const std::int64_t part = balance.part[n];
-        if (balance.hasAll[part] != 0 && balance.hasKept[part] == 0) isDropped[n] = 0;
-    }
-    return isDropped;
-}
-
 /// \return  of what went with its counterpart, one of each
 std::vector<LostPair> dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm,
                                          MendStatistics& statistics) {
@@ -355,11 +167,10 @@ std::vector<LostPair> dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm,
             if (area.isLeftOut[n] == 0) kept.push_back(area.triangles[n]);
         }
     }
-    std::vector<std::size_t> gone;
-    const std::vector<std::uint8_t> isDropped = findDoubled(mesh.points, kept, gone);
+    const DoubledTriangles doubled = findDoubled(mesh.points, kept);
     mesh.triangles.clear();
     for (std::size_t n = 0; n < kept.size(); ++n) {
-        if (isDropped[n] == 0) mesh.triangles.push_back(kept[n]);
+        if (doubled.isDropped[n] == 0) mesh.triangles.push_back(kept[n]);
     }
     statistics.duplicateTriangles = std::ssize(kept) - std::ssize(mesh.triangles);
     if (mesh.triangles.empty()) throw InvalidInput("mend: no triangle has an area");
@@ -368,7 +179,7 @@ std::vector<LostPair> dropFlatAndDoubled(TriangleMesh& mesh, double mayMoveMm,
         for (const VertexId v : mesh.triangles[t]) triangleAt[v] = t;
     }
     std::vector<LostPair> lost;
-    for (const std::size_t n : gone) {
+    for (const std::size_t n : doubled.walls) {
         const auto& [a, b, c] = kept[n];
         lost.push_back({{mesh.points[a], mesh.points[b], mesh.points[c]}, triangleAt[a]});
     }
@@ -650,8 +461,11 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
     Sheets sheets = makeSheetsFaceOneWay(input, trianglesAtEdges(input));
     std::vector<std::uint8_t> isTurned = sheets.isTurned;
     for (const bool isByArea : {false, true}) {  // by area: borders that have no flat cap
-        if (!addCaps(input, isByArea) && isByArea) break;
-        findEdges(input);
+        if (addCaps(input, isByArea)) {
+            findEdges(input);
+        } else if (isByArea) {
+            break;
+        }
         sheets = makeSheetsFaceOneWay(input, trianglesAtEdges(input));
         turnSheetsOutward(input, sheets);
         for (std::size_t t = 0; t < isTurned.size(); ++t) isTurned[t] ^= sheets.isTurned[t];
