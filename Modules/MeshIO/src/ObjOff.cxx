@@ -149,6 +149,7 @@ private:
         for (std::string_view word = line.word(); !word.empty(); word = line.word()) {
             corners_.push_back(decodeCorner(word));
         }
+        if (corners_.empty()) malformed("a face has no corners");
         faces_.add(corners_);
         if (isAmongPoints_) noteBlock();
         if (mesh_.points.empty()) beginsWithFaces_ = true;

@@ -303,6 +303,12 @@ TEST(Polygons, OfTwoCornersAreLinesLeftOut) {
     EXPECT_EQ(file.warnings[0].code, "lines-left-out");
 }
 
+TEST(Polygons, WithoutCornersAreMalformedText) {
+    const std::string message =
+        messageOf<FileError>([] { decoded("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf\n", "a.obj"); });
+    EXPECT_NE(message.find("a face has no corners"), std::string::npos) << message;
+}
+
 TEST(Polygons, WithCornersThatAreNotThereAreKeptWithOtherFaults) {
     Faces mesh = kCube;
     mesh.faces = {{0, 3, 2}, {0, 1, 2, 99}};
