@@ -22,6 +22,17 @@ ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& optio
     }
 }
 
+ReadVolume readOnlyImage(const std::filesystem::path& file) {
+    try {
+        return readImage(file, {});
+    } catch (const ChoiceNeeded& choice) {
+        const bool areVolumes = choice.among() == ChoiceNeeded::Among::Volumes;
+        throw FileError(file.string() + ": holds " + std::to_string(choice.count()) +
+                        (areVolumes ? " volumes" : " series") +
+                        ", must hold one here; write the one that is meant to a file of its own");
+    }
+}
+
 CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOptions& options,
                            const std::string& description, const std::string& heading) {
     const OptionGroup group(app, heading);

@@ -25,6 +25,9 @@ void declareReadOptions(CLI::App& app, ReadOptions& options, const std::string& 
 /// \throws FileError, InvalidInput
 ReadVolume readImage(const std::filesystem::path& file, const ReadOptions& options);
 
+/// The same of an image that has no reading options of its own: one of several is refused.
+ReadVolume readOnlyImage(const std::filesystem::path& file);
+
 /// Adds --volume, an image beside a program's surfaces, and the same options, which then need it.
 /// \return --volume
 CLI::Option* declareVolume(CLI::App& app, std::filesystem::path& volume, ReadOptions& options,

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "Common/CommonFrame.h"
+#include "Common/ImageOptions.h"
 #include "Common/Json.h"
 #include "Common/Naming.h"
 #include "Run.h"
@@ -20,18 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ReadVolume readImage(const fs::path& path, const std::string& role, BemRun& run,
-                     const ReadOptions& options = {}) {
-    ReadVolume read = readVolume(path, options);
+/// Notes what of an image belongs into the reports.
+ReadVolume noting(ReadVolume read, const fs::path& path, const std::string& role, BemRun& run) {
     run.model.inputs.push_back({baseName(path), role, read.format});
     if (!read.scaling.empty()) run.scalings[path] = read.scaling;
     addWarnings(run.model.warnings, read.warnings, path.filename().string());
     return read;
 }
 
-/// As readImage(), and the surfaces' frame is this image's.
+/// The image whose frame is that of the surfaces.
 ReadVolume readMainImage(const fs::path& path, const std::string& role, BemRun& run) {
-    ReadVolume read = readImage(path, role, run, run.options.read);
+    ReadVolume read = noting(readImage(path, run.options.read), path, role, run);
     run.model.image = read.volume.view().geometry();
     if (run.options.report.isWanted() && !run.shownImage) run.shownImage = read;
     return read;
@@ -93,7 +93,7 @@ HeadBoundaries boundariesFromImages(BemRun& run, const BemHooks& hooks) {
     const auto readMask = [&](const fs::path& path, const char* role,
                               std::optional<VolumeView>& view) {
         if (path.empty()) return;
-        view = read.emplace_back(readImage(path, role, run)).volume.view();
+        view = read.emplace_back(noting(readOnlyImage(path), path, role, run)).volume.view();
     };
     run.timer.time("read", [&] {
         std::vector<fs::path> main{source == BemSource::T1       ? options.t1
@@ -168,7 +168,7 @@ void chooseTkRas(BemRun& run) {
         std::error_code error;
         if (fs::is_regular_file(orig, error)) {
             requireIn(orig, subject);
-            run.model.tkRasVolume = readVolume(orig).volume.view().geometry();
+            run.model.tkRasVolume = readOnlyImage(orig).volume.view().geometry();
             run.model.tkRasName = "orig.mgz";
             return;
         }

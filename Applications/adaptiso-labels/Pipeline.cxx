@@ -261,7 +261,7 @@ int runLabels(const LabelsOptions& given) {
 
     std::optional<ReadVolume> behind;
     if (!options.volume.empty()) {
-        behind = run.stage("read", [&] { return readImage(options.volume, {}); });
+        behind = run.stage("read", [&] { return readOnlyImage(options.volume); });
     }
     LabelCensus census;
     const Volume volume = run.stage("read", [&] { return readMap(options, run, census); });

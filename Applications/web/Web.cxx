@@ -20,8 +20,12 @@
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Programs.h"
+#include "adaptiso-labels/Masks.h"
+#include "adaptiso-labels/Pipeline.h"
 #include "adaptiso-labels/Regions.h"
+#include "adaptiso-labels/Run.h"
 #include "adaptiso-mesh/Info.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Volume.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/HeadModel/HeadBoundaries.h"
@@ -207,10 +211,25 @@ Json affineJson(const ImageGeometry& geometry) {
     return rows;
 }
 
+/// A label map as adaptiso-labels takes it: masks in a folder are joined to one.
+ReadVolume readMap(const std::string& path, const ReadOptions& read) {
+    labels::LabelsOptions options;
+    options.input = path;
+    options.read = read;
+    labels::LabelsRun run(options, {});
+    labels::findMasks(options, run);
+    if (options.masks.empty()) return readImage(path, read);
+    std::string format;
+    Volume map = labels::joinMasks(run, format);
+    return {std::move(map), format + ", " + counted(std::ssize(options.masks), "mask"),
+            std::move(run.warnings)};
+}
+
 void openImage(const std::string& path, const ReadOptions& options, bool isLabels) {
     constexpr std::int64_t kMostShown = 16'000'000, kMostPreviewed = 2'000'000;
     image.reset();
-    image.emplace(OpenImage{readImage(path, options), {}, {}, {}});
+    image.emplace(
+        OpenImage{isLabels ? readMap(path, options) : readImage(path, options), {}, {}, {}});
     const VolumeView& view = image->read.volume.view();
     const ValueSummary values = summarizeValues(view);
     const auto at = [&](std::size_t n) {

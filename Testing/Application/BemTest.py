@@ -10,7 +10,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from support import BAD_INPUT, CHECK_FAILED, OK, USAGE, Image, main, write_nifti
+from support import BAD_INPUT, CHECK_FAILED, OK, USAGE, Image, main, write_4d_nifti, write_nifti
 from bemSupport import (BEM, CHECK, NAMES, QUICK, RADII, README, STEP, BemTest, head, read_tri,
                         volume)
 from headDefects import DEFECTS, good, write_off
@@ -571,6 +571,12 @@ class BadInput(BemTest):
         for pattern, arguments in cases.items():
             with self.subTest(pattern):
                 self.fails(USAGE, re.escape(pattern), *arguments)
+
+    def test_a_mask_of_several_volumes(self):
+        write_nifti(self.path("a.nii"), Image((2, 2, 2), "B", bytes(8)))
+        write_4d_nifti(self.path("4d.nii"), [Image((2, 2, 2), "B", bytes(8))] * 2)
+        self.fails(BAD_INPUT, "4d.nii: holds 2 volumes, must hold one here", "--t1", "a.nii", "--brain-mask", "4d.nii",
+                   "-o", "m")
 
     def test_images_without_a_head(self):
         write_nifti(self.path("flat.nii"), Image((20, 20, 20), "B", bytes(8000)))

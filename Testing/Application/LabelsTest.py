@@ -237,6 +237,9 @@ class OutputTest(LabelsTest):
         self.assertIn("outer (1) ", self.path("page.html").read_text())  # a neighbour that is not wanted
         self.path("broken.nii").write_text("no map")
         self.refused(BAD_INPUT, "none.nii", "broken.nii", "-o", "two", "--report", "p.html", "--volume", "none.nii")
+        write_4d_nifti(self.path("4d.nii"), [three_boxes(), three_boxes()])
+        self.refused(BAD_INPUT, "4d.nii: holds 2 volumes, must hold one here", "boxes.nii", "-o", "two", "--report",
+                     "p.html", "--volume", "4d.nii")
         self.refused(USAGE, "--volume: is shown on the page", "boxes.nii", "-o", "two", "--volume",
                      "t1.nii")
 

@@ -100,12 +100,14 @@ std::vector<fs::path> placesFor(const fs::path& input) {
 
 }  // namespace
 
-bool hasItkReaders() {
-    return !itkLibrary().empty();
+std::string withoutItkText() {
+    if (!itkLibrary().empty()) return {};
+    return "MINC and other formats of ITK need libadaptisoItkIO.so (Debian package adaptiso-itk), "
+           "which is not here";
 }
 
 std::optional<ReadVolume> readWithItk(const fs::path& input, const ReadOptions& options) {
-    if (!hasItkReaders()) return std::nullopt;
+    if (itkLibrary().empty()) return std::nullopt;
     const auto allocate = [&](const ImageGeometry& geometry, PixelType type) {
         requireUsableGeometry(input, geometry);
         return allocateSamples(input, requireImageBytes(input, geometry.size, type));

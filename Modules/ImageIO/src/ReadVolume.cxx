@@ -149,13 +149,10 @@ ReadVolume readAnyFormat(const fs::path& input, const ReadOptions& options) {
         detail::refuse(input, "is compressed as a whole, as its format is not",
                        "decompress it, e.g. with gunzip");
     }
-    detail::refuse(
-        input, "not a format that is read here",
-        std::string("give NIfTI, NRRD, MetaImage, MGH, DICOM, or a folder of Zarr") +
-            (detail::hasItkReaders()
-                 ? ""
-                 : "; MINC and other formats of ITK need "
-                   "libadaptisoItkIO.so (Debian package adaptiso-itk), which is not here"));
+    const std::string others = detail::withoutItkText();
+    detail::refuse(input, "not a format that is read here",
+                   "give NIfTI, NRRD, MetaImage, MGH, DICOM, or a folder of Zarr" +
+                       (others.empty() ? "" : "; " + others));
 }
 
 /// \throws InvalidInput  an option of another format

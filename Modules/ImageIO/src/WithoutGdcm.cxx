@@ -32,8 +32,8 @@ std::shared_ptr<std::byte[]> allocateSharedBytes(std::uint64_t) {
     return {};
 }
 
-bool hasItkReaders() {
-    return false;
+std::string withoutItkText() {
+    return "convert MINC and other formats of ITK to NIfTI, e.g. with mnc2nii";
 }
 
 std::optional<ReadVolume> readWithItk(const std::filesystem::path&, const ReadOptions&) {

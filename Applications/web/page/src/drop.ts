@@ -57,27 +57,32 @@ export function takeFiles(zone: HTMLElement, take: (files: InputFile[]) => void)
   }
 }
 
-/** The folder of slices that were chosen as files. */
+/** The folders of slices and of masks that were chosen as files. */
 export const kSlices = "slices";
+export const kMasks = "masks";
 
 /** Files that are an image by themselves, or the header of one. */
 const imagesOf = (files: InputFile[]): InputFile[] =>
   files.filter((file) => /\.(nii|nii\.gz|nrrd|nhdr|mha|mhd|mgh|mgz|hdr)$/i.test(file.path));
 
-/** What a program is given for them: the image among them, or the folder that holds them. Slices that were chosen as
- * files are put into one. \throws Error  they are several images */
-export function asInput(files: InputFile[]): { files: InputFile[]; path: string } {
+const into = (folder: string, files: InputFile[]): { files: InputFile[]; path: string } =>
+  ({ files: files.map(({ path, data }) => ({ path: `${folder}/${path}`, data })), path: folder });
+
+/** What a program is given for them: the image among them, or the folder that holds them. Slices, and masks of one label
+ * map, that were chosen as files are put into one. \throws Error  they are several images */
+export function asInput(files: InputFile[], isLabels: boolean): { files: InputFile[]; path: string } {
   const first = files[0].path.split("/")[0], images = imagesOf(files);
   if (first !== "." && files.every((file) => file.path.startsWith(`${first}/`))) return { files, path: first };
   if (files.length === 1) return { files, path: files[0].path };
   if (images.length > 1) {
+    if (isLabels && files.every(({ path }) => /^(\.\/)?[^/]+$/.test(path))) return into(kMasks, files);
     throw new Error(`${images.map(({ path }) => path).join(" and ")} are ${images.length} scans: give one here`
       + " (a mask has its own place, under Head model)");
   }
   if (images.length === 1) return { files, path: images[0].path };
-  return { files: files.map((file) => ({ path: `${kSlices}/${file.path}`, data: file.data })), path: kSlices };
+  return into(kSlices, files);
 }
 
-/** A name for what is made of it. */
+/** A name for what is made of it. Braces stand for parts of a name to the programs. */
 export const stemOf = (path: string): string =>
-  path.split("/").at(-1)?.replace(/\.gz$/i, "").replace(/\.[^.]*$/, "").replace(/^-+/, "") || "surface";
+  path.split("/").at(-1)?.replace(/\.gz$/i, "").replace(/\.[^.]*$/, "").replace(/^-+/, "").replaceAll(/[{}]/g, "_") || "surface";

@@ -2,7 +2,7 @@
 import { byId, formatCount, make, showDrawing, showGiven, swatch } from "./dom";
 import { takeFiles } from "./drop";
 import type { ImageFacts, InputFile, RunResult } from "./protocol";
-import { memoryOf, type Scan } from "./scan";
+import { memoryOf, type Scan, sizeOf } from "./scan";
 import { exampleHead } from "./nifti";
 import { isChecked, kReport, number, type Page, reportOf, type Run, type Task, tellLeftOut } from "./task";
 import type { Color, Surface } from "./painter";
@@ -52,7 +52,7 @@ export class LabelsTab {
     if (isChecked("file-names")) args.push("--file-names", "name");
     args.push("--format", byId<HTMLSelectElement>("labels-format").value, "-o", "regions-of-map", "--json", kReport);
     return { program: "adaptiso-labels", args, files,
-      memoryBytes: scan.looker.crossedEdges(Number.NaN).then((faces) => memoryOf.labels(facts, faces)),
+      memoryBytes: scan.looker.crossedEdges(Number.NaN).then((faces) => memoryOf.labels(facts, faces) + sizeOf(files)),
       shownArgs: args.map((arg) => arg.startsWith("names/") ? arg.slice("names/".length) : arg) };
   }
 

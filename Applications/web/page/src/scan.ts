@@ -1,10 +1,14 @@
 /** The image that the tabs Mesh, Head model and Labels work on. */
 import { byId, formatBytes, make } from "./dom";
-import { asInput, kSlices } from "./drop";
+import { asInput, kMasks, kSlices } from "./drop";
 import { Cancelled, type Looker, Refused } from "./engine";
 import { nifti } from "./nifti";
 import type { ImageFacts, InputFile, ReadOptions, Series } from "./protocol";
 import { kMostMemory, kProgramBytes, type Page, Task, tooLarge } from "./task";
+
+const sum = (numbers: number[]): number => numbers.reduce((all, each) => all + each, 0);
+/** Bytes as they lie in the files. */
+export const sizeOf = (files: InputFile[]): number => sum(files.map(({ data }) => data instanceof Blob ? data.size : data.length));
 
 /** Size after unpacking, bytes: gzip ends with the length of its last member, modulo 4 GiB. */
 async function unpackedBytes({ data }: InputFile): Promise<number> {
@@ -84,9 +88,10 @@ export class Scan {
     byId("facts-box").hidden = false;
     let path = "";
     try {
-      const input = asInput(given), { files } = input;
+      const input = asInput(given, isLabels), { files } = input;
       path = input.path;
-      const bytes = (await Promise.all(files.map(unpackedBytes))).reduce((sum, each) => sum + each, 0);
+      const sizes = await Promise.all(files.map(unpackedBytes));
+      const bytes = isLabels ? Math.max(...sizes) + sizeOf(files) : sum(sizes);  // masks are read one after another
       if (turn !== this.turn) throw new Cancelled();
       const need = kProgramBytes + bytes;
       if (need > kMostMemory) throw new Refused(tooLarge(path, need, "adaptiso-mesh, or adaptiso-giant"), 3);
@@ -107,7 +112,8 @@ export class Scan {
       for (const listener of this.listeners) listener();
       if (error instanceof Cancelled) return undefined;
       if (!(error instanceof Refused)) return new Refused((error as Error).message, 3);
-      const named = path === kSlices ? error.line.replace(`${kSlices}:`, `${given.length} files:`) : error.line;
+      const named = path === kSlices ? error.line.replace(`${kSlices}:`, `${given.length} files:`)
+        : path === kMasks ? error.line.replaceAll(`${kMasks}/`, "") : error.line;
       return new Refused(named, error.exitCode, error.series, error.volumes);
     }
   }

@@ -439,6 +439,43 @@ for (const browserName of kBrowsers) {
       await picture(page, `${browserName}-labels`);
     });
 
+    itOnce("makes a mesh of a scan whose name has braces or begins with a dash", async () => {
+      await press(page, "#tab-mesh");
+      for (const name of ["{{SCRIPT}}.nii", "-o.nii"]) {
+        writeNifti(join(folder, name), [40, 44, 48], balls);
+        await give(page, "#scan-files", join(folder, name));
+        await page.waitForFunction((shown) => (document.body.dataset.scan ?? "").endsWith(shown), {}, name);
+        await press(page, "#mesh .go");
+        assert.equal(await ended(page, "mesh"), "", name);
+      }
+    });
+
+    itOnce("joins masks that were chosen together: the program's files", async () => {
+      mkdirSync(join(folder, "masks"));
+      const mask = (name, at, size = 24) => {
+        writeNifti(join(folder, "masks", name), [size, size, size], (i, j, k) => Number(Math.hypot(i - at, j - 12, k - 12) < 6));
+        return join(folder, "masks", name);
+      };
+      await press(page, "#tab-labels");
+      const given = [mask("left.nii", 9), mask("right.nii", 15)];
+      await give(page, "#labels-file", ...given);
+      await page.waitForFunction(() => document.body.dataset.scan === "masks");
+      assert.match(await textOf(page, "#facts"), /NIfTI-1, 2 masks/);
+      assert.match(await textOf(page, "#scan-warnings"), /in more than one mask/);
+      await page.select("#labels-format", ".stl");
+      await press(page, "#labels .go");
+      assert.equal(await ended(page, "labels"), "");
+      const files = unzip(await saved(page, open.downloads, "#labels .saves .main", "regions.zip"));
+      const command = (await textOf(page, "#labels .copy:nth-of-type(2) code")).split(" ");
+      assert.equal(native(folder, ...command, "--force").status, 0);
+      assert.ok(files.has("regions-of-map/regions/left.stl"), String([...files.keys()]));
+      for (const [name, bytes] of files) {
+        if (!name.endsWith("report.json")) assert.deepEqual(bytes, readFileSync(join(folder, name)), name);
+      }
+      await give(page, "#labels-file", given[0], mask("small.nii", 9, 20));
+      await page.waitForFunction(() => document.querySelector("#labels .refusal").textContent.includes(": left.nii: has 24 x 24 x 24 voxels, small.nii 20 x 20 x 20"));
+    });
+
     itOnce("makes a head model of the example by one click", async () => {
       await press(page, "#tab-head");
       await page.$eval("#head .result", (box) => { box.hidden = true; });  // the last one's stays until the scan is open
