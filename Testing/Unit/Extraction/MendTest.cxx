@@ -319,6 +319,48 @@ TEST(Mend, ThinsNewSurface) {
     EXPECT_NEAR(enclosedVolume(mended.mesh), 1600, 5);
 }
 
+/// A plate on a ring of `corners`, its faces fans of slivers.
+TriangleMesh plateMesh(std::int64_t corners, const Vec3& middle, double radius, double height) {
+    TriangleMesh plate;
+    for (const double z : {0.0, height}) {
+        for (std::int64_t n = 0; n < corners; ++n) {
+            const double angle = 2 * std::numbers::pi * (n + 0.3) / corners;
+            plate.points.push_back(middle +
+                                   Vec3{radius * std::cos(angle), radius * std::sin(angle), z});
+        }
+    }
+    for (VertexId n = 0; n < corners; ++n) {
+        const VertexId next = (n + 1) % corners, above = corners + n, aboveNext = corners + next;
+        if (n > 0 && next > 0) {
+            plate.triangles.push_back({0, next, n});
+            plate.triangles.push_back({corners, above, aboveNext});
+        }
+        plate.triangles.push_back({n, next, aboveNext});
+        plate.triangles.push_back({n, aboveNext, above});
+    }
+    return plate;
+}
+
+/// Faces that cross at so small an angle that single precision moves the crossing by millimetres.
+TEST(Mend, CutsFacesThatCrossAtASmallAngle) {
+    constexpr double kAngle = 8e-8;
+    TriangleMesh plates =
+        merged({plateMesh(100, {10, -5, 0}, 90, 5), plateMesh(97, {-20, 15, -3}, 80, 3)});
+    for (std::size_t v = 0; v < plates.points.size(); ++v) {
+        Vec3& p = plates.points[v];
+        p.z += kAngle * (v < 200 ? p.x - p.y : 0.5 * p.y - p.x);
+    }
+    plates = merged({plateMesh(103, {0, 0, -5}, 100, 5), plates});
+    for (Vec3& p : plates.points) {
+        p.z -= 1.397;
+        for (int axis = 0; axis < 3; ++axis) p[axis] = static_cast<float>(p[axis]);
+    }
+    const Mended mended = mend(plates, within(3));
+    expectMended(mended);
+    EXPECT_EQ(mended.statistics.cells, 0);
+    EXPECT_LT(mended.statistics.inputToResultMm, 1e-3);
+}
+
 /// What a bound dissolves is listed, not only what lies in new cells.
 TEST(Mend, ListsAPlateThatIsTooThin) {
     TriangleMesh plate = cubeMesh({20, 0, 0}, {30, 10, 0.05});

@@ -208,10 +208,12 @@ std::optional<std::vector<Kind>> kindsOf(const TriangleMesh& before, const Arran
 /// Cuts the triangles of a closed mesh where they meet, round by round.
 class CrossingCutter {
 public:
-    CrossingCutter(const MendInput& input, double sizeMm, double boundMm, double nearMm)
+    CrossingCutter(const MendInput& input, double sizeMm, double boundMm, double nearMm,
+                   bool isSingle)
         : input_(input),
           boundMm_(boundMm),
           nearMm_(nearMm),
+          isSingle_(isSingle),
           sizeMm_(sizeMm),
           sheets_(labelComponents(input.mesh)),
           firstNew_(input.mesh.points.size()),
@@ -317,8 +319,8 @@ private:
         return true;
     }
 
-    /// Rounds points from `first` on to single precision, so that most files hold them; those at
-    /// one place become one.
+    /// Rounds points from `first` on to single precision, where asked, so that most files hold
+    /// them; those at one place become one.
     void roundPoints(std::size_t first) {
         TriangleMesh& mesh = cut_.mesh;
         std::vector<std::uint8_t> isBeside(mesh.points.size());  // in a triangle with a new point
@@ -334,7 +336,7 @@ private:
             becomes[v] = static_cast<VertexId>(v);
             if (isBeside[v] == 0) continue;
             Vec3& p = mesh.points[v];
-            for (int axis = 0; axis < 3 && v >= first; ++axis) {
+            for (int axis = 0; axis < 3 && v >= first && isSingle_; ++axis) {
                 const double rounded = static_cast<float>(p[axis]);
                 if (std::abs(rounded - p[axis]) <= kPartRounded * boundMm_) p[axis] = rounded;
             }
@@ -613,7 +615,9 @@ private:
     }
 
     const MendInput& input_;
-    double boundMm_, nearMm_, sizeMm_;
+    double boundMm_, nearMm_;
+    bool isSingle_;
+    double sizeMm_;
     double movedMm_ = 0;      ///< by corners that became one with others
     ComponentLabels sheets_;  ///< of the input
     std::size_t firstNew_;    ///< points from this on are not the input's
@@ -634,11 +638,18 @@ std::optional<MendInput> cutCrossings(const MendInput& input, const BoundingBox&
     if ((input.crossingPairs.empty() && isClosed) || !input.undecided.empty()) return std::nullopt;
     const double boundMm = statistics.maxErrorMm - statistics.movedMm;
     const double sizeMm = std::max(norm(box.minimum), norm(box.maximum));
-    // what near is: by double precision; for planes that are its results; by single precision
+    struct Precision {
+        double near;    ///< of the size
+        bool isSingle;  ///< that of new points
+    };
+    // what near is: by double precision; for planes that are its results; by single precision. Last
+    // for faces that cross at so small an angle that single precision moves where they do
+    constexpr std::array<Precision, 4> kPrecisions{
+        {{1e-11, true}, {1e-8, true}, {1e-6, true}, {1e-11, false}}};
     std::optional<CrossingCutter> best;
-    for (const double part : {1e-11, 1e-8, 1e-6}) {
+    for (const auto& [near, isSingle] : kPrecisions) {
         CrossingCutter cutter(input, sizeMm, boundMm,
-                              std::min(part * sizeMm, kPartRounded * boundMm));
+                              std::min(near * sizeMm, kPartRounded * boundMm), isSingle);
         if (!cutter.cut() || (best && best->crossingPairs() <= cutter.crossingPairs())) continue;
         best.emplace(std::move(cutter));
         if (best->crossingPairs() == 0) break;
