@@ -33,11 +33,15 @@ public:
         std::vector<Indices> triangles;
         if (flatten(corners)) triangles = triangulatePolygon(flat_);
         if (triangles.empty()) {
-            if (!areOnALine()) refuse(number, "crosses itself, or has parts without width");
+            if (!areOnALine() && crossing_++ == 0) firstCrossing_ = number;
             triangles = fan(corners.size());
         }
         return triangles;
     }
+
+    /// Polygons that cross themselves, or have parts without width, and the first of them.
+    std::int64_t crossing() const { return crossing_; }
+    std::int64_t firstCrossing() const { return firstCrossing_; }
 
     /// The largest distance of a corner from its polygon's plane, but for that of rounding.
     double largestDistance() const { return largestDistance_; }
@@ -55,17 +59,11 @@ private:
         });
     }
 
-    void requirePlausible(std::int64_t number, std::span<const VertexId> corners) {
+    static void requirePlausible(std::int64_t number, std::span<const VertexId> corners) {
         constexpr std::size_t kMostCorners = std::size_t{1} << 14;  // time grows with the square
         if (corners.size() > kMostCorners) {
             refuse(number, "has " + std::to_string(corners.size()) + " corners, must have " +
                                std::to_string(kMostCorners) + " at most");
-        }
-        sorted_.assign(corners.begin(), corners.end());
-        std::ranges::sort(sorted_);
-        const auto twice = std::ranges::adjacent_find(sorted_);
-        if (twice != sorted_.end()) {
-            refuse(number, "names the point " + std::to_string(*twice) + " twice");
         }
     }
 
@@ -142,7 +140,7 @@ private:
     const std::vector<Vec3>& points_;
     bool keepsFaults_;
     double largestDistance_ = 0;
-    std::vector<VertexId> sorted_;
+    std::int64_t crossing_ = 0, firstCrossing_ = 0;
     std::vector<Vec3> local_;
     std::vector<Point2> flat_;
 };
@@ -208,7 +206,8 @@ void Faces::moveTo(MeshFile& file, bool keepsFaults, std::int64_t lines) && {
         next = own;
         const auto corners = std::span(corners_).subspan(polygon.corner, polygon.size);
         for (const auto& [a, b, c] : cutter.cut(polygon.number, corners)) {
-            merged.push_back({corners[a], corners[b], corners[c]});
+            const Triangle t{corners[a], corners[b], corners[c]};
+            if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) merged.push_back(t);
         }
     }
     const std::size_t made = merged.size() - static_cast<std::size_t>(next - triangles_.begin());
@@ -218,6 +217,11 @@ void Faces::moveTo(MeshFile& file, bool keepsFaults, std::int64_t lines) && {
     if (cutter.largestDistance() > 0) {
         text += "; corners lie up to " + formatShort(cutter.largestDistance()) +
                 " mm off the plane of their polygon";
+    }
+    if (cutter.crossing() > 0) {
+        text += "; " +
+                counted(cutter.crossing(), "polygon crosses itself", "polygons cross themselves") +
+                ", first: polygon " + std::to_string(cutter.firstCrossing());
     }
     file.warnings.push_back({"polygons-cut", std::move(text)});
 }

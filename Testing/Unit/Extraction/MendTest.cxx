@@ -415,6 +415,25 @@ TEST(Mend, RefusesWideHolesOrLeavesThemOpen) {
     EXPECT_TRUE(topology.isManifold() && topology.isOriented() && !topology.isClosed());
 }
 
+/// The width that a refusal names is enough as the next --max-hole.
+TEST(Mend, NamesAWidthThatIsEnough) {
+    for (const double scale : {1.0, 1.3, 1.71, 0.0123, 987.6}) {
+        TriangleMesh bowl = bare(icosphere(3));
+        std::erase_if(bowl.triangles, [&](const Triangle& t) { return bowl.points[t[0]].z > 0.7; });
+        for (Vec3& p : bowl.points) p = scale * p;
+        MendOptions options;
+        try {
+            mend(bowl, options);
+            FAIL();
+        } catch (const MendRefusal& refusal) {
+            const std::string line = refusal.what();
+            const std::size_t width = line.find(") is ") + 5;
+            options.maxHoleMm = std::stod(line.substr(width));
+        }
+        EXPECT_EQ(mend(bowl, options).statistics.filled.size(), 1u) << scale;
+    }
+}
+
 /// The lattice of the bound would have some hundred thousand cells.
 TEST(Mend, RefusesWideRaggedHolesBeforeTheLongWork) {
     TriangleMesh bowl = bare(icosphere(5));

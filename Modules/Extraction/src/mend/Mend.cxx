@@ -194,7 +194,7 @@ void splitFans(TriangleMesh& mesh) {
 
 [[noreturn]] void refuseHole(const MendedPlace& place, double maxHoleMm) {
     throw InvalidInput("mend: a hole near " + textOf(place.middleMm) + " is " +
-                       formatMeasure(place.spanMm) + " mm wide, more than maxHoleMm, " +
+                       formatBound(place.spanMm, 2) + " mm wide, more than maxHoleMm, " +
                        formatMeasure(maxHoleMm) + " mm");
 }
 
