@@ -154,7 +154,7 @@ struct SurfaceChangeRun : ProgramRun {
 
     /// Puts the result into a report, coloured by its distance from the input, and both into a
     /// table. \param before  the input, in the page's frame
-    /// \param result  in the input's frame; no triangles: there is none, and the input is shown
+    /// \param result  in the input's frame. Where it has no triangles the input is shown
     void show(TriangleMesh before, const TriangleMesh& result, const ShownFrame& frame,
               Report& report) const;
 

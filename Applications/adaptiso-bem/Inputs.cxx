@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Notes what of an image belongs into the reports.
-ReadVolume noting(ReadVolume read, const fs::path& path, const std::string& role, BemRun& run) {
+/// Records an image for the reports.
+ReadVolume recorded(ReadVolume read, const fs::path& path, const std::string& role, BemRun& run) {
     run.model.inputs.push_back({baseName(path), role, read.format});
     if (!read.scaling.empty()) run.scalings[path] = read.scaling;
     addWarnings(run.model.warnings, read.warnings, path.filename().string());
@@ -31,7 +31,7 @@ ReadVolume noting(ReadVolume read, const fs::path& path, const std::string& role
 
 /// The image whose frame is that of the surfaces.
 ReadVolume readMainImage(const fs::path& path, const std::string& role, BemRun& run) {
-    ReadVolume read = noting(readImage(path, run.options.read), path, role, run);
+    ReadVolume read = recorded(readImage(path, run.options.read), path, role, run);
     run.model.image = read.volume.view().geometry();
     if (run.options.report.isWanted() && !run.shownImage) run.shownImage = read;
     return read;
@@ -93,7 +93,7 @@ HeadBoundaries boundariesFromImages(BemRun& run, const BemHooks& hooks) {
     const auto readMask = [&](const fs::path& path, const char* role,
                               std::optional<VolumeView>& view) {
         if (path.empty()) return;
-        view = read.emplace_back(noting(readOnlyImage(path), path, role, run)).volume.view();
+        view = read.emplace_back(recorded(readOnlyImage(path), path, role, run)).volume.view();
     };
     run.timer.time("read", [&] {
         std::vector<fs::path> main{source == BemSource::T1       ? options.t1

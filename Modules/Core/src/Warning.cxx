@@ -68,6 +68,8 @@ constexpr WarningCode kCodes[] = {
     {"pieces-inside-out", "pieces of the surface face inward where they should face outward"},
     {"pixdim-sform-differ",
      "the voxel sizes by pixdim and by the sform differ; the sform was taken"},
+    {"polygons-cross",
+     "polygons cross themselves, or have parts without width; each is a fan of triangles"},
     {"polygons-cut", "a surface's polygons or triangle strips were cut into triangles", true},
     {"qform-sform-differ", "qform and sform place the image differently; the sform was taken"},
     {"resample-filled", "resampling filled what lies around the image with its smallest value"},

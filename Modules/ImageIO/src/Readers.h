@@ -21,7 +21,7 @@ ReadVolume readDicomFolder(const std::filesystem::path& folder, const ReadOption
 /// By ITK's readers of other formats. Empty where none takes the file, or they are not installed.
 std::optional<ReadVolume> readWithItk(const std::filesystem::path& file,
                                       const ReadOptions& options);
-/// What to do for a format of ITK alone where its readers are not here; empty where they are.
+/// Says what to do with a format that ITK alone reads. Empty where ITK's readers are installed.
 std::string withoutItkText();
 
 /// Signs that turn a point of the space into LPS.

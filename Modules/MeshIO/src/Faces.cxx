@@ -218,12 +218,14 @@ void Faces::moveTo(MeshFile& file, bool keepsFaults, std::int64_t lines) && {
         text += "; corners lie up to " + formatShort(cutter.largestDistance()) +
                 " mm off the plane of their polygon";
     }
-    if (cutter.crossing() > 0) {
-        text += "; " +
-                counted(cutter.crossing(), "polygon crosses itself", "polygons cross themselves") +
-                ", first: polygon " + std::to_string(cutter.firstCrossing());
-    }
     file.warnings.push_back({"polygons-cut", std::move(text)});
+    if (cutter.crossing() > 0) {
+        file.warnings.push_back(
+            {"polygons-cross",
+             counted(cutter.crossing(), "polygon crosses itself or has a part without width",
+                     "polygons cross themselves or have parts without width") +
+                 "; first: polygon " + std::to_string(cutter.firstCrossing())});
+    }
 }
 
 void noteLinesLeftOut(std::int64_t count, std::vector<Warning>& warnings) {

@@ -30,7 +30,8 @@ public:
     /// Moves the triangles to file.mesh, in the order of the file. Polygons are cut in the plane of
     /// best fit through them, by triangulatePolygon(); a warning says how many were cut, and how
     /// far their corners lie off these planes. Polygons without area give triangles without area.
-    /// One that crosses itself becomes a fan, which covers what it goes round as often.
+    /// A polygon that crosses itself becomes a fan of triangles, with a warning (polygons-cross):
+    /// the winding number of the fan is the polygon's.
     /// \param lines  that the file lists beside the faces; a note says how many were left out
     /// \pre    file.mesh has its points
     /// \throws FileError  a polygon names a point that is not there (but for keepsFaults, where it

@@ -68,8 +68,8 @@ const imagesOf = (files: InputFile[]): InputFile[] =>
 const into = (folder: string, files: InputFile[]): { files: InputFile[]; path: string } =>
   ({ files: files.map(({ path, data }) => ({ path: `${folder}/${path}`, data })), path: folder });
 
-/** What a program is given for them: the image among them, or the folder that holds them. Slices, and masks of one label
- * map, that were chosen as files are put into one. \throws Error  they are several images */
+/** The input of a program that reads `files`: the one image, or the folder that holds them. Slices chosen as files are put
+ * into a folder; so are images for a label map, as its masks. \throws Error  they are several images, of no label map */
 export function asInput(files: InputFile[], isLabels: boolean): { files: InputFile[]; path: string } {
   const first = files[0].path.split("/")[0], images = imagesOf(files);
   if (first !== "." && files.every((file) => file.path.startsWith(`${first}/`))) return { files, path: first };

@@ -121,8 +121,8 @@ std::vector<std::uint8_t> findWalls(const std::vector<Doubled>& sets) {
     return isWall;
 }
 
-/// Of each triangle: the part that hangs together with it by points is closed, and open without
-/// those that are dropped. Closed: as many triangles run one way along each edge as the other.
+/// Whether the connected part of each triangle is closed, and is open once the dropped triangles
+/// are gone. A part is closed if as many triangles run one way along each edge as the other.
 std::vector<std::uint8_t> findOpened(std::size_t pointCount, const std::vector<Triangle>& triangles,
                                      const std::vector<std::uint8_t>& isDropped) {
     DisjointSets parts(static_cast<std::int64_t>(pointCount));

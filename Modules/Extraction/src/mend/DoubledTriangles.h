@@ -17,8 +17,8 @@ struct DoubledTriangles {
     std::vector<std::size_t> walls;       ///< one of each wall of solids that touch
 };
 
-/// Of triangles at one place all but one are dropped, which faces as more of them do; of walls of
-/// solids that touch all. A closed part that this would open keeps its own.
+/// Finds triangles to drop. Of triangles at one place one stays, which faces as most of them do. Of
+/// a wall between solids that touch none stays. A closed part that this would open keeps all.
 DoubledTriangles findDoubled(const std::vector<Vec3>& points,
                              const std::vector<Triangle>& triangles);
 
