@@ -66,15 +66,14 @@ function(adaptiso_compile_options target)
     endif()
 endfunction()
 
-# adaptiso_cold(<Module> [<source>...]): what walks over no samples and no triangles, the whole module or
-# these sources, is compiled at -O1; -O3 takes the compiler up to half as long again.
+# adaptiso_cold(<Module> [HOT <source>...]): the module is compiled at -O1, but for these sources, which walk
+# over samples or triangles; -O3 takes the compiler up to twice as long.
 function(adaptiso_cold name)
-    set(cold $<$<CONFIG:Release>:-O1>)
-    if(NOT ARGN)
-        target_compile_options(adaptiso${name} PRIVATE ${cold})
-    elseif(NOT CMAKE_UNITY_BUILD)  # a source with options of its own joins no unit, which takes longer
-        set_property(SOURCE ${ARGN} TARGET_DIRECTORY adaptiso${name} APPEND PROPERTY COMPILE_OPTIONS ${cold})
-    endif()
+    cmake_parse_arguments(A "" "" "HOT" ${ARGN})
+    target_compile_options(adaptiso${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    # in a unity build each of them is compiled alone, as it has options of its own
+    set_property(SOURCE ${A_HOT} TARGET_DIRECTORY adaptiso${name} APPEND PROPERTY
+                 COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
 endfunction()
 
 function(adaptiso_check_layers name layer)

@@ -11,6 +11,7 @@
 #include "Common/Naming.h"
 #include "Common/OptionValues.h"
 #include "Common/UsageWords.h"
+#include "adaptiso/ImageIO/ImageNames.h"
 
 namespace adaptiso {
 namespace {

@@ -23,32 +23,6 @@ std::string replaced(std::string text, std::string_view place, std::string_view 
     return text;
 }
 
-std::string inputStem(const fs::path& input) {
-    constexpr std::array<std::string_view, 14> kImageExtensions{
-        ".nii.gz", ".nii", ".hdr.gz", ".hdr", ".img.gz", ".img", ".nrrd",
-        ".nhdr",   ".mha", ".mhd",    ".mgh", ".mgz",    ".dcm", ".ima"};
-    std::error_code error;
-    fs::path path = input;
-    if (fs::is_directory(input, error)) {
-        path = fs::canonical(input, error);  // the name that ".", ".." and "scan/" stand for
-        if (error || path == path.root_path()) return "volume";
-        const std::string name = path.filename().string(), lower = lowerCase(name);
-        for (const std::string_view extension : {".ome.zarr", ".zarr"}) {
-            if (lower.size() > extension.size() && lower.ends_with(extension)) {
-                return name.substr(0, name.size() - extension.size());
-            }
-        }
-        return name;
-    }
-    const std::string name = path.filename().string(), lower = lowerCase(name);
-    for (const std::string_view extension : kImageExtensions) {
-        if (lower.size() > extension.size() && lower.ends_with(extension)) {
-            return name.substr(0, name.size() - extension.size());
-        }
-    }
-    return name;
-}
-
 std::size_t twoPartExtension(const std::string& name) {
     constexpr std::array<std::string_view, 4> kExtensions{".surf.gii", ".shape.gii", ".func.gii",
                                                           ".label.gii"};

@@ -20,11 +20,6 @@ std::string shellQuoted(const std::string& text);
 /// `text` with `by` wherever `place` stood. \pre place is not empty
 std::string replaced(std::string text, std::string_view place, std::string_view by);
 
-/// The input's name without folder and without the extensions of image files: "brain" of
-/// "scans/brain.nii.gz"; the folder's own name of a folder, however it is written, without
-/// ".zarr" or ".ome.zarr".
-std::string inputStem(const std::filesystem::path& input);
-
 /// Length of an extension of two parts, as GIFTI's are: of ".surf.gii", ".shape.gii", ".func.gii",
 /// ".label.gii"; 0 without one.
 std::size_t twoPartExtension(const std::string& name);

@@ -22,6 +22,7 @@
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Files/AtomicOutput.h"
+#include "adaptiso/ImageIO/ImageNames.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Scene.h"
 
@@ -100,9 +101,8 @@ void warnOfMissing(const LabelMerge& merge, const LabelCensus& census, const std
 /// Reads the map, or joins its masks.
 ReadVolume readOne(const LabelsOptions& options, LabelsRun& run) {
     if (options.masks.empty()) return readImage(options.input, options.read);
-    std::string format;
-    Volume map = joinMasks(run, format);
-    return {std::move(map), format, {}};
+    MaskMap map = joinMasks(run);
+    return {std::move(map.volume), map.format, {}};
 }
 
 /// Reads the map and learns what it holds.

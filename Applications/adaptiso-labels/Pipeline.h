@@ -28,7 +28,7 @@ struct LabelsOptions {
     ReadOptions read;
     bool joinsMasks = false;     ///< the inputs are masks of one map
     bool joinsSegments = false;  ///< those of a segmentation are
-    MaskPriority priority;
+    PriorityOption priority;
     std::vector<MaskSource> masks;  ///< of the one map; empty: the input is a map (findMasks())
     bool takesAnyMap = false;       ///< also one that changes from voxel to voxel
     std::filesystem::path names;    ///< a table; empty: one is looked for beside the input

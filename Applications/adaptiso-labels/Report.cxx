@@ -13,39 +13,19 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/TetrahedraJson.h"
 #include "adaptiso/Json/OptionsJson.h"
-#include "adaptiso/SurfacePipeline/LabelsJson.h"
+#include "adaptiso/LabelPipeline/LabelsJson.h"
+#include "adaptiso/LabelPipeline/Masks.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::labels {
 namespace {
-
-/// null of one map
-Json masksJson(const LabelsRun& run) {
-    const JoinedMasks& joined = run.joined;
-    if (joined.masks.empty()) return nullptr;
-    Json files = Json::array(), overlaps = Json::array();
-    for (const MaskFate& mask : joined.masks) {
-        files.push_back({{"file", mask.file},
-                         {"label", mask.label},
-                         {"voxels", mask.voxels},
-                         {"keptVoxels", mask.keptVoxels}});
-    }
-    for (const MaskOverlap& overlap : joined.overlaps) {
-        overlaps.push_back(
-            {{"winner", overlap.winner}, {"loser", overlap.loser}, {"voxels", overlap.voxels}});
-    }
-    return {{"priority", run.options.priority.word()},
-            {"files", files},
-            {"sharedVoxels", joined.sharedVoxels},
-            {"overlaps", overlaps}};
-}
 
 Json inputJson(const LabelsRun& run) {
     const MapSummary& map = run.map;
     Json json{{"file", baseName(run.options.input)}};
     json.update(imageJson(map.format, map.geometry, map.pixelType, map.range, map.warnings));
     json["labels"] = map.labels;
-    json["masks"] = masksJson(run);
+    json["masks"] = masksJson(run.joined);
     return json;
 }
 

@@ -134,7 +134,7 @@ void declareInput(CLI::App& app, LabelsOptions& options) {
         "masks of one map");
     input.value(
         "--priority", "FILE|largest|smallest",
-        [&options](const std::string& text) { options.priority = MaskPriority::parse(text); },
+        [&options](const std::string& text) { options.priority = PriorityOption::parse(text); },
         "Which mask keeps a voxel that several hold: the first of those that FILE names, a name a "
         "line, or the largest, or the smallest (default: the last by name)");
     input.flag("--any-map", options.takesAnyMap,

@@ -15,7 +15,7 @@
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
-#include "adaptiso/SurfacePipeline/MendJson.h"
+#include "adaptiso/Mending/MendJson.h"
 
 namespace adaptiso::mender {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "Common/SurfaceChange.h"
-#include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/Mending/Mend.h"
 
 namespace adaptiso::mender {
 

@@ -11,7 +11,7 @@
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Json/OptionsJson.h"
-#include "adaptiso/SurfacePipeline/MendJson.h"
+#include "adaptiso/Mending/MendJson.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
 namespace adaptiso::mender {

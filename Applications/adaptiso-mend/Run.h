@@ -6,8 +6,8 @@
 #include "Common/SurfaceChange.h"
 #include "Pipeline.h"
 #include "adaptiso/Core/TriangleMesh.h"
-#include "adaptiso/Extraction/Mend.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
+#include "adaptiso/Mending/Mend.h"
 #include "adaptiso/Report/Report.h"
 
 namespace adaptiso::mender {

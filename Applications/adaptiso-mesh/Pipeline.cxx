@@ -18,6 +18,7 @@
 #include "Run.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/ImageIO/ImageNames.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/ImageIO/SampleStatistics.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"

@@ -7,8 +7,8 @@
 #   Applications/web/run.sh [--quick] --test    and tests them beside the native programs in ADAPTISO_BIN, or
 #                                               build/release/bin: the modules' unit tests, the programs and
 #                                               the package under Node, the page in Chromium and Firefox;
-#                                               --quick: without the unit tests of Extraction, Labels,
-#                                               HeadModel and MeshQuality, which take minutes and whose
+#                                               --quick: without the unit tests of Extraction, Mending,
+#                                               Labels, HeadModel and MeshQuality, which take minutes and whose
 #                                               results are in the programs' bytes; the longest tests of the
 #                                               page in Chromium alone. Ends with ctest's summary and its
 #                                               exit code
@@ -24,7 +24,7 @@ for option; do
             optimisation=-O1
             export ADAPTISO_WEB_QUICK=1
             unitTests=(testCore testImageIO testMeshIO testSpanSpace)
-            without=(-E '^(Extraction|AdaptiveClasses|Labels|HeadModel|MeshQuality)$')
+            without=(-E '^(Extraction|Mending|AdaptiveClasses|Labels|HeadModel|MeshQuality)$')
             ;;
         --test) isTest=yes ;;
         *) echo "Applications/web/run.sh: unknown option $option; --quick and --test are known" >&2; exit 2 ;;

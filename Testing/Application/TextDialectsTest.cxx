@@ -14,6 +14,7 @@
 #include "adaptiso-bids/SideFiles.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/ImageIO/ImageNames.h"
 #include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/LabelNames/LabelTable.h"
 #include "adaptiso/MeshIO/MeshFile.h"

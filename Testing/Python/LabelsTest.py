@@ -256,5 +256,69 @@ class Bytes(InFolder):
             adaptiso.labels(boxes(), labels=["left"])
 
 
+class Masks(InFolder):
+    """A folder of masks, or their files, is the map that adaptiso-labels makes of them."""
+
+    def setUp(self):
+        super().setUp()
+        import nibabel
+        self.masks = self.folder / "masks"
+        self.masks.mkdir()
+        volume = boxes()
+        self.files = []
+        for label, name in ((1, "left"), (2, "right"), (7, "top")):
+            mask = (volume == label).astype(np.uint8)
+            if name == "left":
+                mask[8, 3:9, 3:7] = 1  # 24 voxels of the right one's
+            self.files.append(self.masks / f"{name}.nii")
+            nibabel.save(nibabel.Nifti1Image(mask, SHEARED), self.files[-1])
+
+    def compare(self, walls, *arguments):
+        folder = self.folder / "theirs"
+        program("adaptiso-labels", *arguments, "-o", folder, "--force", "--quiet")
+        walls.save(self.folder / "walls.vtp")
+        self.assertEqual((self.folder / "walls.vtp").read_bytes(), (folder / "walls.vtp").read_bytes())
+        theirs = json.loads((folder / "report.json").read_text())
+        self.assertEqual(walls.report["masks"], theirs["input"]["masks"])
+        self.assertEqual([region.name for region in walls.regions.values()],
+                         [region["name"] for region in theirs["regions"]])
+
+    def test_a_folder_and_its_files(self):
+        with self.assertLogs("adaptiso") as log:
+            walls = adaptiso.labels(self.masks)
+        self.assertIn("24 voxels lie in more than one mask; the last by name keeps them: right 24 of left",
+                      log.output[0])
+        self.compare(walls, self.masks)
+        self.assertEqual(walls.report["masks"]["sharedVoxels"], 24)
+        self.assertEqual([region.name for region in walls.regions.values()], ["left", "right", "top"])
+        self.assertEqual(walls, adaptiso.labels(list(map(str, self.files))))
+        self.assertEqual(pickle.loads(pickle.dumps(walls)).report, walls.report)
+        self.assertIsNone(adaptiso.labels(boxes()).report["masks"])
+
+    def test_priorities_and_tables(self):
+        self.compare(adaptiso.labels(self.masks, priority="largest"), self.masks, "--priority", "largest")
+        (self.folder / "order.txt").write_text("left\n")
+        self.compare(adaptiso.labels(self.masks, priority=["left"]), self.masks,
+                     "--priority", self.folder / "order.txt")
+        (self.folder / "names.tsv").write_text("index\tname\n5\ttop\n9\tleft\n")
+        walls = adaptiso.labels(self.masks, names=self.folder / "names.tsv", labels=["top", "left"])
+        self.assertEqual({label: region.name for label, region in walls.regions.items()}, {5: "top", 9: "left"})
+
+    def test_what_is_refused(self):
+        for message, image, options in (
+                ("priority: is for masks, and left.nii is one image", self.files[0], {"priority": "largest"}),
+                ("priority 'lef': must be one of largest, smallest", self.masks, {"priority": "lef"}),
+                ("priority 'lef': is no mask", self.masks, {"priority": ["lef"]}),
+                ("priority 'top': stands there twice", self.masks, {"priority": ["top", "top"]}),
+                ("priority, segments: are for a folder", boxes(), {"priority": "largest"}),
+                ("segments 'some': must be one of all", self.masks, {"segments": "some"}),
+                ("segments: takes those of one file", self.files, {"segments": "all"}),
+                ("names: masks go by their files' names", self.masks, {"names": {1: "a"}}),
+                ("affine: a file has its own", self.masks, {"affine": SHEARED}),
+                ("are two masks of one name, left", [self.files[0], self.files[0]], {})):
+            with self.subTest(message), self.assertRaisesRegex(adaptiso.Error, message):
+                adaptiso.labels(image, **options)
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=2)

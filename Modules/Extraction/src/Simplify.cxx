@@ -7,13 +7,13 @@
 
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Extraction/detail/UnitScale.h"
 #include "adaptiso/MeshQuality/NearestPlaces.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptive/AdaptiveMethod.h"
 #include "adaptive/Parameters.h"
 #include "adaptive/full/MeshSurface.h"
 #include "repair/MeshParts.h"
-#include "repair/UnitScale.h"
 
 namespace adaptiso {
 namespace {

@@ -5,7 +5,7 @@
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/TetrahedraJson.h"
 #include "adaptiso/Json/OptionsJson.h"
-#include "adaptiso/SurfacePipeline/MendJson.h"
+#include "adaptiso/Mending/MendJson.h"
 
 namespace adaptiso {
 namespace {

@@ -8,9 +8,9 @@
 #include "adaptiso/Extraction/Components.h"
 #include "adaptiso/HeadPipeline/BemChecks.h"
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
+#include "adaptiso/Mending/MendJson.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
-#include "adaptiso/SurfacePipeline/MendJson.h"
 
 namespace adaptiso {
 namespace {

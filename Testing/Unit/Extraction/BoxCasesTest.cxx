@@ -4,7 +4,7 @@
 #include <set>
 #include <tuple>
 
-#include "cells/BoxCases.h"
+#include "adaptiso/Extraction/detail/BoxCases.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -8,7 +8,7 @@
 #include "AdaptivePromises.h"
 #include "RandomVolumes.h"
 #include "Support/Meshes.h"
-#include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/Mending/Mend.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 
 namespace adaptiso::testing {

@@ -5,7 +5,7 @@
 
 #include "Support/AnalyticVolumes.h"
 #include "adaptiso/Core/Errors.h"
-#include "filling/PlanarTriangulation.h"
+#include "adaptiso/Extraction/detail/PlanarTriangulation.h"
 
 namespace adaptiso::detail {
 namespace {

@@ -14,7 +14,7 @@ from . import _adaptiso
 from ._adaptiso import Error
 from ._arguments import (Progress, count, is_path, listed, path as checked_path,
                          progress as checked_progress, shown, threads as checked_threads, warn, word)
-from ._images import Samples, base_name, read_only, samples_of
+from ._images import Samples, base_name, prepared, read_only, samples_of
 from ._mesh import IN_VOXELS, Mesh, is_identity
 from ._options import checked, takes
 from ._triangles import FRAMES, Triangles
@@ -76,11 +76,12 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
     larger label but for 0, which comes last.
     """
 
-    __slots__ = ("_names", "_report", "_regions")
+    __slots__ = ("_names", "_masks", "_report", "_regions")
 
-    def __init__(self, data: _adaptiso.LabelData, names: "_Names") -> None:
+    def __init__(self, data: _adaptiso.LabelData, names: "_Names", masks: str = "null") -> None:
         self._data = data
         self._names = names
+        self._masks = masks
         self._report: Optional[Dict[str, Any]] = None
         self._regions: Optional[Dict[int, Region]] = None
 
@@ -96,9 +97,11 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
 
     @property
     def report(self) -> Dict[str, Any]:
-        """``walls`` and ``regions`` as ``adaptiso-labels --json`` has them."""
+        """``walls`` and ``regions`` as ``adaptiso-labels --json`` has them, and ``masks`` as its
+        ``input`` has them: None of a map."""
         if self._report is None:
             report = json.loads(self._data.report)
+            report["masks"] = json.loads(self._masks)
             entries = report["regions"]
             for entry, (name, color) in zip(entries, self._names.of(
                     [entry["label"] for entry in entries])):
@@ -217,7 +220,7 @@ class LabelSurfaces(Triangles[_adaptiso.LabelData]):
         data = self._data
         both = np.stack([data.label0, data.label1], axis=1)
         return _unpickled, (data.vertices, data.faces, both, data.shape, data.affine, data.report,
-                            self._names.table)
+                            self._names.table, self._masks)
 
 
 class _Names:
@@ -249,8 +252,9 @@ class _Names:
 
 @takes("labels")
 def labels(image: Any, *, labels: Optional[Iterable[Union[int, str]]] = None,
-           names: Union[Mapping[int, str], Any] = None, affine: Any = None, threads: int = 0,
-           progress: Optional[Progress] = None,
+           names: Union[Mapping[int, str], Any] = None,
+           priority: Union[str, Sequence[str], None] = None, segments: Optional[str] = None,
+           affine: Any = None, threads: int = 0, progress: Optional[Progress] = None,
            **options: Unpack[LabelsOptions]) -> LabelSurfaces:
     """Make the surfaces of all regions of a segmentation at once: neighbours share one wall.
 
@@ -260,9 +264,10 @@ def labels(image: Any, *, labels: Optional[Iterable[Union[int, str]]] = None,
 
     Parameters
     ----------
-    image : ndarray of shape (I, J, K), nibabel, SimpleITK or ITK image, or path
+    image : ndarray of shape (I, J, K), nibabel, SimpleITK or ITK image, path, or list of paths
         Whole numbers, of any type; 0 is what lies outside of all regions. As for `surface`; an
-        array in C order is copied here.
+        array in C order is copied here. A folder of masks, a file for each region, or a list of
+        such files is joined to one map, each mask a region that goes by its file's name.
     **options
     labels : iterable of int or str, optional
         The regions that are wanted, by number or name; time and memory go with their walls. Default:
@@ -271,6 +276,11 @@ def labels(image: Any, *, labels: Optional[Iterable[Union[int, str]]] = None,
         Names by label, or a table of names and colours in a format that adaptiso-labels
         takes. Default: of a path, what lies beside the file, or in it (3D
         Slicer's segments, the LabelTable of a NIfTI extension).
+    priority : {"largest", "smallest"} or sequence of str, optional
+        Which mask keeps a voxel that several hold: by size, or the first of these names. Default:
+        the last by name.
+    segments : {"all"}, optional
+        Take all segments of a DICOM segmentation, or all layers of a 3D Slicer .seg.nrrd, for masks.
     affine : array_like of shape (4, 4), optional
         Takes voxel indices to scanner RAS mm. Default: the image's own; of an array the identity.
     threads, progress
@@ -303,16 +313,70 @@ def labels(image: Any, *, labels: Optional[Iterable[Union[int, str]]] = None,
     aims = checked("labels", options)
     checked_threads(threads)
     checked_progress(progress)
-    table = _names(names, image)
+    joined = _joined(image, names, priority, segments, affine)
+    table, masks = (joined.names, joined.masks) if joined else (_names(names, image), "null")
     chosen = _chosen(labels, table)
-    samples = samples_of(image, affine, True)
+    samples = joined.samples if joined else samples_of(image, affine, True)
     subject = samples.file or "image"
     with read_only(samples.user):
         data = _adaptiso.make_labels(samples.volume, aims, chosen, threads, progress, subject,
                                      _advice_on(samples))
     if len(data.faces) == 0:
         raise Error(f"{subject}: holds no label: all voxels are 0")
-    return LabelSurfaces(data, table)
+    return LabelSurfaces(data, table, masks)
+
+
+class _Joined(NamedTuple):
+    """Masks that were joined to a map."""
+
+    samples: Samples
+    names: _Names
+    masks: str  #: JSON
+
+
+def _joined(image: Any, names: Any, priority: Any, segments: Any, affine: Any) -> Optional[_Joined]:
+    """The map that masks make; None where `image` is a map. \\raises Error"""
+    if segments is not None:
+        word("segments", segments, ["all"])
+    is_list = isinstance(image, (list, tuple)) and len(image) > 0 and all(map(is_path, image))
+    if not is_list and not is_path(image):
+        if priority is not None or segments is not None:
+            raise Error("priority, segments: are for a folder of masks, their files, or a segmentation's file")
+        return None
+    if is_list and segments is not None:
+        raise Error("segments: takes those of one file, and a list of files was given")
+    files = [checked_path("image", file) for file in (image if is_list else [image])]
+    kind = "files" if is_list else "folder" if segments is None else "segments"
+    by, listed_names = _priority(priority)
+    table = checked_path("names", names) if names is not None and not isinstance(names, Mapping) else ""
+    found = _adaptiso.join_masks(files, kind, by, listed_names, table)
+    if found is None:
+        if priority is not None:
+            raise Error(f"priority: is for masks, and {base_name(files[0])} is one image")
+        return None
+    if isinstance(names, Mapping):
+        raise Error("names: masks go by their files' names; a table of names gives them numbers")
+    if affine is not None:
+        raise Error("affine: a file has its own")
+    array, own, format, warnings, entries, masks = found
+    subject = "image" if is_list else base_name(files[0])
+    warn(warnings, file=subject)
+    return _Joined(prepared(array, own, subject, format, warnings),
+                   _Names({label: (name, None if color is None else (color[0], color[1], color[2]))
+                           for label, name, color in entries}), masks)
+
+
+def _priority(priority: Any) -> Tuple[str, List[str]]:
+    """Its word, and the names of a list. \\raises Error"""
+    if priority is None:
+        return "name", []
+    if isinstance(priority, str):
+        return word("priority", priority, ["largest", "smallest"]), []
+    rule = '"largest", "smallest" or a sequence of names'
+    names = listed("priority", priority, rule)
+    if not all(isinstance(name, str) for name in names):
+        raise Error(f"priority {shown(priority)}: must be {rule}")
+    return "list", names
 
 
 def _advice_on(samples: Samples) -> str:
@@ -357,7 +421,7 @@ def _names(names: Any, image: Any) -> _Names:
 
 
 def _unpickled(vertices: Any, faces: Any, both: Any, shape: Any, affine: Any, report: str,
-               table: Any) -> LabelSurfaces:
+               table: Any, masks: str = "null") -> LabelSurfaces:
     data = _adaptiso.LabelData.from_arrays(vertices, faces, np.ascontiguousarray(both, np.int32),
                                            list(shape), affine, report)
-    return LabelSurfaces(data, _Names(table))
+    return LabelSurfaces(data, _Names(table), masks)

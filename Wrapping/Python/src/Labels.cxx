@@ -4,6 +4,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,11 +21,13 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Files/AtomicOutput.h"
+#include "adaptiso/ImageIO/ReadVolume.h"
 #include "adaptiso/Json/Json.h"
 #include "adaptiso/LabelNames/LabelTable.h"
+#include "adaptiso/LabelPipeline/LabelsJson.h"
+#include "adaptiso/LabelPipeline/Masks.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/Scene.h"
-#include "adaptiso/SurfacePipeline/LabelsJson.h"
 #include "adaptiso/SurfacePipeline/StoredMesh.h"
 #include "adaptiso/SurfacePipeline/SurfaceJson.h"
 
@@ -215,6 +219,63 @@ py::list entriesOf(const LabelTable& table) {
     return entries;
 }
 
+/// How masks are found: in a folder, as files, or as the segments of one file.
+std::vector<MaskSource> findMasks(const std::vector<std::string>& paths, const std::string& kind) {
+    if (kind == "folder") return masksOfFolder(paths.front(), {});
+    if (kind == "segments") return masksOfSegments(paths.front(), {});
+    return masksOfFiles({paths.begin(), paths.end()}, {});
+}
+
+/// \param priority  "name", "largest", "smallest" or "list" \param listed  names, with "list"
+MaskPriority priorityOf(const std::string& priority, const std::vector<std::string>& listed,
+                        const std::vector<MaskSource>& masks) {
+    using enum MaskPriority::Rule;
+    MaskPriority result;
+    for (const auto rule : {LastByName, Largest, Smallest, Listed}) {
+        if (MaskPriority{rule}.word() == priority) result.rule = rule;
+    }
+    for (const std::string& name : listed) {
+        const auto mask = std::ranges::find(masks, name, &MaskSource::name);
+        const auto place = static_cast<std::size_t>(mask - masks.begin());
+        if (mask == masks.end()) throw InvalidInput("priority '" + name + "': is no mask");
+        if (std::ranges::count(result.listed, place) > 0) {
+            throw InvalidInput("priority '" + name + "': stands there twice");
+        }
+        result.listed.push_back(place);
+    }
+    return result;
+}
+
+/// Masks joined to a map: samples, affine, format, warnings, (label, name, colour or None) of each
+/// mask, JSON of masksJson(); None where a folder holds no masks.
+py::object joinedMasks(const std::vector<std::string>& paths, const std::string& kind,
+                       const std::string& priority, const std::vector<std::string>& listed,
+                       const std::string& table) {
+    std::vector<MaskSource> masks;
+    std::vector<Warning> warnings;
+    std::optional<MaskMap> map;
+    runUnlocked(0, [&] {
+        masks = findMasks(paths, kind);
+        if (masks.empty()) return;
+        if (!table.empty()) {
+            const LabelTable rows = readLabelTable(table);
+            warnings = rows.warnings;
+            const auto more = numberByTable(masks, rows, std::filesystem::path(table).filename());
+            warnings.insert(warnings.end(), more.begin(), more.end());
+        }
+        const auto read = [](const MaskSource& mask) { return readVolume(mask.file, mask.read); };
+        map = joinMasks(masks, priorityOf(priority, listed, masks), read, "");
+    });
+    if (masks.empty()) return py::none();
+    warnings.insert(warnings.end(), map->warnings.begin(), map->warnings.end());
+    py::list entries;
+    for (const MaskSource& mask : masks) {
+        entries.append(py::make_tuple(mask.label, mask.name, mask.color));
+    }
+    return py::make_tuple(toArray(map->volume), affineOf(map->volume.view().geometry()),
+                          map->format, warnings, entries, dumped(masksJson(map->joined)));
+}
+
 void declareLabelData(py::module_& module) {
     const auto side = [](int n) {
         return [n](const py::object& self) {
@@ -300,6 +361,8 @@ void declareLabels(py::module_& module) {
         },
         py::arg("volume"), py::arg("options"), py::arg("labels"), py::arg("threads"),
         py::arg("progress"), py::arg("subject"), py::arg("advice"));
+    module.def("join_masks", joinedMasks, py::arg("paths"), py::arg("kind"), py::arg("priority"),
+               py::arg("listed"), py::arg("table"));
     module.def(
         "read_label_table",
         [](const std::string& path) {

@@ -1,4 +1,4 @@
-#include "adaptiso/Extraction/Mend.h"
+#include "adaptiso/Mending/Mend.h"
 
 #include <pybind11/stl.h>
 
@@ -13,7 +13,7 @@
 #include "Words.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/HeadModel/NestSurfaces.h"
-#include "adaptiso/SurfacePipeline/MendJson.h"
+#include "adaptiso/Mending/MendJson.h"
 
 namespace adaptiso::python {
 namespace {

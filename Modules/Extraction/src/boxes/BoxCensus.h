@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "cells/BoxCases.h"
+#include "adaptiso/Extraction/detail/BoxCases.h"
 #include "lattice/BlockSamples.h"
 
 namespace adaptiso::detail {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Extraction/detail/BoxCases.h"
 #include "boxes/SimpleBoxes.h"
-#include "cells/BoxCases.h"
 #include "lattice/ActiveBlocks.h"
 #include "lattice/Bits.h"
 #include "lattice/BlockSamples.h"

@@ -1,4 +1,4 @@
-#include "cells/BoxCases.h"
+#include "adaptiso/Extraction/detail/BoxCases.h"
 
 #include <algorithm>
 #include <cmath>

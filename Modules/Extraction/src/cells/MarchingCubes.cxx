@@ -4,7 +4,7 @@
 #include <span>
 
 #include "adaptiso/Core/Parallel.h"
-#include "cells/BoxCases.h"
+#include "adaptiso/Extraction/detail/BoxCases.h"
 #include "cells/CellTriangles.h"
 #include "lattice/ActiveBlocks.h"
 #include "lattice/Bits.h"

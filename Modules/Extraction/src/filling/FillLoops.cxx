@@ -4,8 +4,8 @@
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Extraction/detail/PlanarTriangulation.h"
 #include "filling/LoopTriangulation.h"
-#include "filling/PlanarTriangulation.h"
 #include "repair/MeshRepair.h"
 
 namespace adaptiso::detail {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adaptiso/Core/Geometry.h"
-#include "filling/PlanarTriangulation.h"
+#include "adaptiso/Extraction/detail/PlanarTriangulation.h"
 
 namespace adaptiso::detail {
 

@@ -1,4 +1,4 @@
-#include "filling/PlanarTriangulation.h"
+#include "adaptiso/Extraction/detail/PlanarTriangulation.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,6 +1,6 @@
 #include "lattice/BlockSamples.h"
 
-#include "cells/BoxCases.h"
+#include "adaptiso/Extraction/detail/BoxCases.h"
 
 namespace adaptiso::detail {
 

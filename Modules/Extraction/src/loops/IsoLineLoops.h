@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "cells/BoxCases.h"
+#include "adaptiso/Extraction/detail/BoxCases.h"
 #include "lattice/BlockSamples.h"
 #include "lattice/BlockVertices.h"
 

@@ -1,4 +1,4 @@
-#include "repair/FlatTriangles.h"
+#include "adaptiso/Extraction/detail/FlatTriangles.h"
 
 #include <algorithm>
 #include <iterator>

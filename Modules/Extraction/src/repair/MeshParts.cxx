@@ -15,10 +15,10 @@
 #include "adaptiso/Core/MortonOrder.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/ParallelSort.h"
+#include "adaptiso/Extraction/detail/FlatTriangles.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/SurfaceProof/HalfEdges.h"
 #include "adaptive/mesh/Patch.h"
-#include "repair/FlatTriangles.h"
 
 namespace adaptiso::detail {
 namespace {

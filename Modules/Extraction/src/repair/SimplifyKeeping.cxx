@@ -1,4 +1,4 @@
-#include "repair/SimplifyKeeping.h"
+#include "adaptiso/Extraction/detail/SimplifyKeeping.h"
 
 #include <algorithm>
 #include <set>

@@ -6,10 +6,10 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/Extraction/Tiles.h"
+#include "adaptiso/Extraction/detail/SimplifyKeeping.h"
 #include "adaptiso/SurfaceProof/HalfEdges.h"
 #include "adaptive/mesh/MetricFrame.h"
 #include "repair/HashOfPoint.h"
-#include "repair/SimplifyKeeping.h"
 #include "tiles/TileGrid.h"
 
 namespace adaptiso {

@@ -9,11 +9,11 @@
 #include "Support/Meshes.h"
 #include "Support/Soundness.h"
 #include "Surfaces.h"
+#include "adaptiso/Extraction/detail/FlatTriangles.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptive/full/MeshSurface.h"
 #include "adaptive/proof/DistanceProof.h"
 #include "adaptive/rounds/BorderMarks.h"
-#include "repair/FlatTriangles.h"
 #include "repair/MeshParts.h"
 
 namespace adaptiso::testing {

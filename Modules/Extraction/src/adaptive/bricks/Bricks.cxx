@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "adaptiso/Extraction/detail/BoxCases.h"
 #include "adaptive/bricks/SheetTest.h"
-#include "cells/BoxCases.h"
 #include "cells/CellTriangles.h"
 
 namespace adaptiso::detail {

@@ -1,0 +1,345 @@
+#include "BorderCaps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "PlanarFiller.h"
+#include "adaptiso/Core/AabbTree.h"
+#include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/PolygonTriangulation.h"
+#include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/Topology.h"
+
+namespace adaptiso::detail {
+namespace {
+
+constexpr std::size_t kMostOfRing = 4096;
+
+/// Edges, by their ends ascending.
+std::uint64_t endsKey(VertexId a, VertexId b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
+           static_cast<std::uint64_t>(std::max(a, b));
+}
+
+/// The triangulation of a ring of the least area in space [Barequet1995], of triangles with an area
+/// and edges that are not in the mesh. Empty if no such triangulation exists.
+/// \param isTaken   whether an edge between two points is the mesh's
+/// \param isBarred  whether a triangle is not to be taken, by places in the ring, ascending
+template <class IsTaken, class IsBarred>
+std::vector<Triangle> leastArea(const std::vector<Vec3>& points, const std::vector<VertexId>& ring,
+                                const IsTaken& isTaken, const IsBarred& isBarred) {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    const std::size_t size = ring.size();
+    std::vector<double> least(size * size);  // of the part from i to j, i < j
+    std::vector<std::size_t> apex(size * size);
+    for (std::size_t length = 2; length < size; ++length) {
+        for (std::size_t i = 0; i + length < size; ++i) {
+            const std::size_t j = i + length;
+            double& best = least[i * size + j];
+            best = kNone;
+            const bool isSide = length + 1 == size;  // of the ring itself
+            if (!isSide && isTaken(ring[i], ring[j])) continue;
+            for (std::size_t k = i + 1; k < j; ++k) {
+                const double parts = least[i * size + k] + least[k * size + j];
+                if (!(parts < best) || isBarred(i, k, j)) continue;
+                const Corners c{points[ring[i]], points[ring[k]], points[ring[j]]};
+                const double area = 0.5 * norm(areaVector2(c[0], c[1], c[2]));
+                const double longest = std::max(
+                    {squaredNorm(c[1] - c[0]), squaredNorm(c[2] - c[1]), squaredNorm(c[0] - c[2])});
+                constexpr double kFlat = 1e-6;  // of the longest side
+                if (area <= kFlat * longest || parts + area >= best) continue;
+                best = parts + area;
+                apex[i * size + j] = k;
+            }
+        }
+    }
+    if (!(least[size - 1] < kNone)) return {};
+    std::vector<Triangle> triangles;
+    std::vector<std::array<std::size_t, 2>> left{{0, size - 1}};
+    while (!left.empty()) {
+        const auto [i, j] = left.back();
+        left.pop_back();
+        if (j < i + 2) continue;
+        const std::size_t k = apex[i * size + j];
+        triangles.push_back({ring[i], ring[k], ring[j]});
+        left.push_back({i, k});
+        left.push_back({k, j});
+    }
+    return triangles;
+}
+
+/// A ring seen along its mean normal, counter-clockwise. Empty where it has none.
+std::vector<Point2> seenFlat(const std::vector<Vec3>& points, const std::vector<VertexId>& ring) {
+    Vec3 normal;
+    const Vec3& origin = points[ring[0]];
+    for (std::size_t n = 0; n < ring.size(); ++n) {
+        normal += cross(points[ring[n]] - origin, points[ring[(n + 1) % ring.size()]] - origin);
+    }
+    normal = normalized(normal);
+    if (normal == Vec3{}) return {};
+    Vec3 along;
+    along[std::abs(normal.x) < 0.6 ? 0 : 1] = 1;
+    const Vec3 u = normalized(cross(along, normal)), v = cross(normal, u);
+    std::vector<Point2> flat;
+    flat.reserve(ring.size());
+    for (const VertexId p : ring) {
+        flat.push_back({dot(u, points[p] - origin), dot(v, points[p] - origin)});
+    }
+    return flat;
+}
+
+using EdgeSet = std::unordered_set<std::uint64_t>;  ///< by endsKey()
+
+/// Closes rings by the least area of triangles that cross no other.
+class ClearCaps {
+public:
+    explicit ClearCaps(const TriangleMesh& mesh) : mesh_(mesh), tree_(mesh) {}
+
+    /// Empty where some rounds lead to none, or those of all rings take too long.
+    std::vector<Triangle> close(const std::vector<VertexId>& ring, const EdgeSet& taken) {
+        constexpr int kMostRounds = 32;
+        constexpr std::size_t kMost = 256;  // a round's time grows with the third power
+        const std::size_t size = ring.size();
+        if (size > kMost) return {};
+        std::unordered_map<VertexId, std::size_t> placeOf;
+        for (std::size_t n = 0; n < size; ++n) placeOf[ring[n]] = n;
+        std::vector<bool> isBarred(size * size * size);  // by places in the ring, ascending
+        const auto numberOf = [&](std::size_t i, std::size_t k, std::size_t j) {
+            return (i * size + k) * size + j;
+        };
+        for (int round = 0; round < kMostRounds; ++round) {
+            stepsLeft_ -= static_cast<std::int64_t>(size * size * size / 6);
+            if (stepsLeft_ < 0) return {};
+            std::vector<Triangle> triangles = leastArea(
+                mesh_.points, ring,
+                [&](VertexId a, VertexId b) { return taken.contains(endsKey(a, b)); },
+                [&](std::size_t i, std::size_t k, std::size_t j) {
+                    return isBarred[numberOf(i, k, j)];
+                });
+            bool isClear = true;
+            for (const Triangle& t : triangles) {
+                if (!crosses(t)) continue;
+                std::array<std::size_t, 3> at{placeOf.at(t[0]), placeOf.at(t[1]), placeOf.at(t[2])};
+                std::sort(at.begin(), at.end());
+                isBarred[numberOf(at[0], at[1], at[2])] = true;
+                isClear = false;
+            }
+            if (!isClear) continue;
+            for (const Triangle& t : triangles) {
+                closed_.push_back({mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]});
+            }
+            return triangles;
+        }
+        return {};
+    }
+
+private:
+    bool crosses(const Triangle& t) const {
+        const Corners own{mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]};
+        BoundingBox box = boxOf(own);
+        const bool isCap = std::any_of(closed_.begin(), closed_.end(), [&](const Corners& cap) {
+            return box.overlaps(boxOf(cap)) && trianglesCross(own, cap);
+        });
+        if (isCap) return true;
+        bool isFound = false;
+        tree_.forEachOverlap(box, [&](std::int64_t other) {
+            if (!trianglesCross(own, cornersOf(mesh_, other))) return;
+            isFound = true;
+            box = BoundingBox::empty();  // ends the search
+        });
+        return isFound;
+    }
+
+    const TriangleMesh& mesh_;
+    AabbTree tree_;  ///< of the triangles that were there first
+    std::vector<Corners> closed_;
+    std::int64_t stepsLeft_ = 500'000'000;  ///< of all rounds
+};
+
+/// In the plane that fits best. Empty where the ring crosses itself in it, or an edge is the
+/// mesh's.
+std::vector<Triangle> flatCap(const TriangleMesh& mesh, const std::vector<VertexId>& ring,
+                              const EdgeSet& taken) {
+    std::vector<Triangle> triangles;
+    for (const auto& [a, b, c] : triangulatePolygon(seenFlat(mesh.points, ring))) {
+        triangles.push_back({ring[a], ring[b], ring[c]});
+    }
+    std::size_t sides = 0;  // of the ring, which the mesh has
+    for (const auto& [a, b, c] : triangles) {
+        for (const std::uint64_t key : {endsKey(a, b), endsKey(b, c), endsKey(c, a)}) {
+            if (taken.contains(key)) ++sides;
+        }
+    }
+    if (sides > ring.size()) return {};
+    const auto haveArea = [&] {
+        return std::none_of(triangles.begin(), triangles.end(),
+                            [&](const Triangle& t) { return isDegenerate(mesh, t); });
+    };
+    if (haveArea()) return triangles;
+    Vec3 normal;
+    for (const auto& [a, b, c] : triangles) {
+        normal += areaVector2(mesh.points[a], mesh.points[b], mesh.points[c]);
+    }
+    flipSlivers(mesh.points, normalized(normal), triangles);
+    if (!haveArea()) triangles.clear();
+    return triangles;
+}
+
+/// Which way a border goes on where it meets itself.
+class BorderTurns {
+public:
+    BorderTurns(const MendInput& input, const Buckets<VertexId>& next)
+        : points_(input.mesh.points) {
+        for (const Triangle& t : input.mesh.triangles) {
+            for (const VertexId v : t) {
+                if (next.of(v).size() < 2) continue;
+                normals_[v] += areaVector2(points_[t[0]], points_[t[1]], points_[t[2]]);
+            }
+        }
+    }
+
+    /// The way with the narrowest hole between it and where the border came from, seen along the
+    /// mean normal of the triangles there.
+    std::size_t narrowest(VertexId from, VertexId at, const std::vector<VertexId>& ways) const {
+        if (ways.size() < 2) return 0;
+        const Vec3 normal = normalized(normals_.at(at)), back = points_[from] - points_[at];
+        std::size_t best = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t n = 0; n < ways.size(); ++n) {
+            const Vec3 on = points_[ways[n]] - points_[at];
+            const Vec3 u = on - dot(on, normal) * normal, v = back - dot(back, normal) * normal;
+            double turn = std::atan2(dot(normal, cross(u, v)), dot(u, v));
+            if (turn <= 0) turn += 2 * std::numbers::pi;
+            if (turn < least) {
+                least = turn;
+                best = n;
+            }
+        }
+        return best;
+    }
+
+private:
+    const std::vector<Vec3>& points_;
+    std::unordered_map<VertexId, Vec3> normals_;  ///< where a border meets itself
+};
+
+}  // namespace
+
+std::vector<std::vector<VertexId>> borderRings(const MendInput& input) {
+    std::vector<std::uint8_t> uses(input.edges.size());
+    for (const auto& edges : input.edgeOf) {
+        for (const std::uint32_t e : edges)
+            uses[e] = static_cast<std::uint8_t>(std::min(uses[e] + 1, 3));
+    }
+    if (std::find(uses.begin(), uses.end(), 1) == uses.end()) return {};
+    const Buckets<VertexId> next(input.mesh.points.size(), [&](const auto& give) {
+        for (std::size_t t = 0; t < input.edgeOf.size(); ++t) {
+            const Triangle& corners = input.mesh.triangles[t];
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (uses[input.edgeOf[t][i]] == 1) give(corners[(i + 1) % 3], corners[i]);
+            }
+        }
+    });
+    const BorderTurns turns(input, next);
+    std::vector<std::vector<VertexId>> rings;
+    std::vector<std::vector<VertexId>> left(input.mesh.points.size());
+    for (VertexId v = 0; v < std::ssize(left); ++v)
+        left[v].assign(next.of(v).begin(), next.of(v).end());
+    std::vector<std::int64_t> placeOnPath(input.mesh.points.size(), -1);
+    for (VertexId first = 0; first < std::ssize(left); ++first) {
+        std::vector<VertexId> path{first};
+        placeOnPath[first] = 0;
+        while (!path.empty()) {
+            std::vector<VertexId>& ways = left[path.back()];
+            if (ways.empty()) {  // it ends at an edge of several triangles
+                placeOnPath[path.back()] = -1;
+                path.pop_back();
+                continue;
+            }
+            const std::size_t way =
+                path.size() < 2 ? 0 : turns.narrowest(path[path.size() - 2], path.back(), ways);
+            const VertexId v = ways[way];
+            ways.erase(ways.begin() + static_cast<std::ptrdiff_t>(way));
+            const std::int64_t place = placeOnPath[v];
+            if (place < 0) {
+                placeOnPath[v] = std::ssize(path);
+                path.push_back(v);
+                continue;
+            }
+            rings.emplace_back(path.begin() + place, path.end());
+            for (auto p = path.begin() + place + 1; p != path.end(); ++p) placeOnPath[*p] = -1;
+            path.resize(place + 1);
+        }
+    }
+    return rings;
+}
+
+bool addCaps(MendInput& input, bool isByArea) {
+    TriangleMesh& mesh = input.mesh;
+    const auto rings = borderRings(input);
+    if (rings.empty()) return false;
+    std::vector<std::uint8_t> isOnRing(mesh.points.size());
+    for (const auto& ring : rings) {
+        for (const VertexId v : ring) isOnRing[v] = 1;
+    }
+    EdgeSet taken;
+    for (const MendInput::Edge& edge : input.edges) {
+        if (isOnRing[edge.a] != 0 && isOnRing[edge.b] != 0) taken.insert(endsKey(edge.a, edge.b));
+    }
+    std::optional<ClearCaps> clear;
+    std::uint32_t caps = input.capOf.empty() ? 0 : input.capOf.back() + 1;
+    const std::uint32_t before = caps;
+    for (const std::vector<VertexId>& ring : rings) {
+        if (ring.size() < 3 || ring.size() > kMostOfRing) continue;
+        std::vector<Triangle> triangles;
+        if (!isByArea) {
+            triangles = flatCap(mesh, ring, taken);
+        } else {
+            if (!clear) clear.emplace(mesh);
+            triangles = clear->close(ring, taken);
+        }
+        if (triangles.empty()) continue;
+        for (const auto& [a, b, c] : triangles) {
+            taken.insert({endsKey(a, b), endsKey(b, c), endsKey(c, a)});
+        }
+        mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+        input.capOf.insert(input.capOf.end(), triangles.size(), caps++);
+    }
+    return caps != before;
+}
+
+bool dropCrossingCaps(MendInput& input) {
+    const std::int64_t first = input.firstCap();
+    std::vector<std::uint8_t> isDropped(input.capOf.empty() ? 0 : input.capOf.back() + 1);
+    const auto isCap = [&](std::uint32_t t) { return t >= first; };
+    const auto judge = [&](std::uint32_t t) {
+        if (isCap(t)) isDropped[input.capOf[t - first]] = 1;
+    };
+    for (const auto& [a, b] : input.crossingPairs) {
+        judge(a);
+        judge(b);
+    }
+    for (const std::uint32_t t : input.undecided) judge(t);
+    if (std::find(isDropped.begin(), isDropped.end(), 1) == isDropped.end()) return false;
+    // caps come last, so that no other triangle gets another number; none that crosses stays
+    std::erase_if(input.crossingPairs,
+                  [&](const auto& pair) { return isCap(pair[0]) || isCap(pair[1]); });
+    std::erase_if(input.undecided, isCap);
+    std::size_t next = 0;
+    for (std::size_t n = 0; n < input.capOf.size(); ++n) {
+        if (isDropped[input.capOf[n]] != 0) continue;
+        input.mesh.triangles[first + next] = input.mesh.triangles[first + n];
+        input.capOf[next++] = input.capOf[n];
+    }
+    input.mesh.triangles.resize(first + next);
+    input.capOf.resize(next);
+    return true;
+}
+
+}  // namespace adaptiso::detail

@@ -1,0 +1,121 @@
+#include "PlanarFiller.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "adaptiso/Core/Buckets.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Extraction/detail/BoxCases.h"
+
+namespace adaptiso::detail {
+namespace {
+
+/// Smallest area of two triangles over the square of their longest edge; negative where one
+/// faces the other way.
+double worseShape(const std::vector<Vec3>& points, const Vec3& normal, const Triangle& s,
+                  const Triangle& t) {
+    double worst = 1;
+    for (const auto& corners : {s, t}) {
+        const Vec3 &a = points[corners[0]], &b = points[corners[1]], &c = points[corners[2]];
+        const double longest =
+            std::max({squaredNorm(b - a), squaredNorm(c - b), squaredNorm(a - c)});
+        worst = std::min(worst, dot(normal, areaVector2(a, b, c)) / longest);
+    }
+    return worst;
+}
+
+}  // namespace
+
+void flipSlivers(const std::vector<Vec3>& points, const Vec3& normal,
+                 std::vector<Triangle>& triangles) {
+    constexpr int kMostRounds = 64;
+    bool hasChanged = triangles.size() > 1;
+    for (int round = 0; hasChanged && round < kMostRounds; ++round) {
+        hasChanged = false;
+        std::map<std::pair<VertexId, VertexId>, std::size_t> at;  // the triangle left of an edge
+        for (std::size_t n = 0; n < triangles.size(); ++n) {
+            for (int i = 0; i < 3; ++i) at[{triangles[n][i], triangles[n][(i + 1) % 3]}] = n;
+        }
+        std::vector<std::uint8_t> isChanged(triangles.size());
+        for (std::size_t n = 0; n < triangles.size(); ++n) {
+            for (int i = 0; i < 3 && isChanged[n] == 0; ++i) {
+                const VertexId a = triangles[n][i], b = triangles[n][(i + 1) % 3],
+                               c = triangles[n][(i + 2) % 3];
+                const auto beside = at.find({b, a});
+                if (beside == at.end() || isChanged[beside->second] != 0) continue;
+                auto& other = triangles[beside->second];
+                VertexId d = other[0];
+                for (const VertexId v : other) {
+                    if (v != a && v != b) d = v;
+                }
+                const Triangle first{a, d, c}, second{d, b, c};
+                if (worseShape(points, normal, first, second) <=
+                    1.01 * worseShape(points, normal, triangles[n], other) + 1e-12) {
+                    continue;
+                }
+                triangles[n] = first;
+                other = second;
+                isChanged[n] = isChanged[beside->second] = 1;
+                hasChanged = true;
+            }
+        }
+    }
+}
+
+std::optional<std::vector<PlanarGroup>> PlanarFiller::fill(
+    const std::vector<Vec3>& points, const Corners& plane,
+    const std::vector<std::vector<VertexId>>& loops) {
+    const Vec3 normal = areaVector2(plane[0], plane[1], plane[2]);
+    int axis = 0;
+    for (int a = 1; a < 3; ++a) {
+        if (std::abs(normal[a]) > std::abs(normal[axis])) axis = a;
+    }
+    const BoundingBox box = boxOf(plane);
+    const Vec3 size = box.size();
+    constexpr double kDigits = 1 << 29;
+    const double scale = kDigits / std::max({size.x, size.y, size.z});
+    std::vector<PlanarCorner> corners;
+    std::vector<VertexId> nodes;
+    DisjointSets sets(std::ssize(loops));
+    std::vector<std::int64_t> loopOf;
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        const auto first = static_cast<std::uint32_t>(corners.size());
+        const auto count = static_cast<std::uint32_t>(loops[l].size());
+        for (std::uint32_t n = 0; n < count; ++n) {
+            const Vec3 p = points[loops[l][n]] - box.minimum;
+            auto u = std::llround(scale * p[axisAfter(axis, 1)]),
+                 v = std::llround(scale * p[axisAfter(axis, 2)]);
+            if (normal[axis] < 0) std::swap(u, v);
+            corners.push_back({u, v, first + (n + count - 1) % count, first + (n + 1) % count});
+            nodes.push_back(loops[l][n]);
+            loopOf.push_back(static_cast<std::int64_t>(l));
+        }
+    }
+    std::vector<LocalTriangle> triangles;
+    try {
+        triangulator_.triangulate(corners, triangles);
+    } catch (const InternalError&) {
+        return std::nullopt;
+    }
+    for (const LocalTriangle& local : triangles) {
+        sets.join(loopOf[local[0]], loopOf[local[1]]);
+        sets.join(loopOf[local[0]], loopOf[local[2]]);
+    }
+    std::map<std::int64_t, PlanarGroup> groups;
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        groups[sets.find(static_cast<std::int64_t>(l))].loops.push_back(l);
+    }
+    for (const LocalTriangle& local : triangles) {
+        groups[sets.find(loopOf[local[0]])].triangles.push_back(
+            {nodes[local[0]], nodes[local[1]], nodes[local[2]]});
+    }
+    std::vector<PlanarGroup> all;
+    for (auto& [set, group] : groups) all.push_back(std::move(group));
+    for (PlanarGroup& group : all) flipSlivers(points, normalized(normal), group.triangles);
+    return all;
+}
+
+}  // namespace adaptiso::detail
