@@ -14,6 +14,7 @@
 #include "Common/RunApp.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/Report/Page.h"
@@ -30,18 +31,19 @@ std::vector<Picture> writePictures(Report report, const std::string& program,
     report.version = programVersion();
     report.date = reportDate();
     report.leavesOutFaces = options.leavesOutFaces;
-    std::vector<Picture> pictures = drawPictures(report);
+    std::vector<Picture> pictures, views;
+    parallelInvoke(
+        [&] {
+            if (options.view) views = drawViews(report, *options.view);
+        },
+        [&] { pictures = drawPictures(report); });
+    const auto write = [&](const Picture& picture) {
+        outputs.emplace_back(options.pictures / picture.name, options.pictures)
+            .writeText(picture.png);
+    };
     if (!options.pictures.empty()) {
-        for (const Picture& picture : pictures) {
-            outputs.emplace_back(options.pictures / picture.name, options.pictures)
-                .writeText(picture.png);
-        }
-        if (options.view) {
-            for (const Picture& picture : drawViews(report, *options.view)) {
-                outputs.emplace_back(options.pictures / picture.name, options.pictures)
-                    .writeText(picture.png);
-            }
-        }
+        std::ranges::for_each(pictures, write);
+        std::ranges::for_each(views, write);
     }
     if (!options.page.empty()) {
         outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));

@@ -154,24 +154,10 @@ ReportTable fileTable(const std::vector<std::pair<std::string, std::uintmax_t>>&
     return table;
 }
 
-/// A small octahedron at every electrode and landmark.
-TriangleMesh electrodeMarks(const std::vector<NamedPoint>& points) {
-    constexpr double kRadiusMm = 3;
-    constexpr std::array<Triangle, 8> kFaces{
-        {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
-    TriangleMesh marks;
-    for (const NamedPoint& point : points) {
-        const auto first = static_cast<VertexId>(marks.points.size());
-        for (int corner = 0; corner < 6; ++corner) {
-            Vec3 at = point.point;
-            at[corner / 2] += corner % 2 == 0 ? kRadiusMm : -kRadiusMm;
-            marks.points.push_back(at);
-        }
-        for (const Triangle& t : kFaces) {
-            marks.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-        }
-    }
-    return marks;
+void addMarks(const std::string& name, const std::vector<Vec3>& points, double radiusMm,
+              Report& report) {
+    report.surfaces.push_back({name, pointMarks(points, radiusMm)});
+    report.surfaces.back().areMarks = true;
 }
 
 void addElectrodes(const BemModel& model, Report& report) {
@@ -199,7 +185,18 @@ void addElectrodes(const BemModel& model, Report& report) {
              : placed.landmarkOrigin == "file" ? "as the electrodes' file has them"
                                                : "as given"});
     }
-    report.surfaces.push_back({"electrodes and landmarks", electrodeMarks(all)});
+    std::vector<Vec3> points;
+    for (const NamedPoint& point : all) points.push_back(point.point);
+    addMarks("electrodes and landmarks", points, 3, report);
+}
+
+void addSources(const BemModel& model, Report& report) {
+    if (!model.sources || model.meshes.empty()) return;
+    std::vector<Vec3> points;
+    for (const SourceSpace& space : model.sources->spaces) {
+        for (const std::int64_t point : space.used) points.push_back(space.surface.points[point]);
+    }
+    if (!points.empty()) addMarks("sources", points, 1, report);
 }
 
 }  // namespace
@@ -239,6 +236,7 @@ Report bemReport(const BemModel& model,
             " mm it is a guess (closed, filled, cut, or as thick as usual).");
     }
     addElectrodes(model, report);
+    addSources(model, report);
     return report;
 }
 

@@ -2,9 +2,12 @@
 
 #include <cairo/cairo.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <numbers>
+#include <span>
 
+#include "Png.h"
 #include "adaptiso/Core/Errors.h"
 
 namespace adaptiso {
@@ -16,14 +19,15 @@ void require(cairo_status_t status) {
     }
 }
 
-cairo_status_t append(void* target, const unsigned char* bytes, unsigned int count) {
-    static_cast<std::string*>(target)->append(reinterpret_cast<const char*>(bytes), count);
-    return CAIRO_STATUS_SUCCESS;
-}
-
 std::uint32_t packed(ReportColor c, std::uint8_t opacity = 0) {
     return std::uint32_t{opacity} << 24 | std::uint32_t{c[0]} << 16 | std::uint32_t{c[1]} << 8 |
            c[2];
+}
+
+/// The color of which Cairo holds `value`, its product with the opacity.
+std::uint32_t unmultiplied(std::uint32_t value, std::uint32_t opacity) {
+    if (opacity == 0) return 0;
+    return std::min<std::uint32_t>(0xFF, (value * 0xFF + opacity / 2) / opacity);
 }
 
 /// Paints `packedAt(n)`, n from 0 row by row.
@@ -165,9 +169,22 @@ void Canvas::restore() {
 
 std::string Canvas::png() const {
     require(cairo_status(context_.get()));
-    std::string bytes;
-    require(cairo_surface_write_to_png_stream(surface_.get(), append, &bytes));
-    return bytes;
+    cairo_surface_flush(surface_.get());
+    const unsigned char* data = cairo_image_surface_get_data(surface_.get());
+    const int stride = cairo_image_surface_get_stride(surface_.get());
+    const bool hasOpacity = cairo_image_surface_get_format(surface_.get()) == CAIRO_FORMAT_ARGB32;
+    return pngOf(width_, height_, hasOpacity, [&](int y, std::span<std::uint8_t> samples) {
+        const auto* row = reinterpret_cast<const std::uint32_t*>(data + std::ptrdiff_t{y} * stride);
+        std::uint8_t* sample = samples.data();
+        for (int x = 0; x < width_; ++x) {
+            const std::uint32_t opacity = hasOpacity ? row[x] >> 24 : 0xFF;
+            for (const int shift : {16, 8, 0}) {
+                const std::uint32_t value = row[x] >> shift & 0xFF;
+                *sample++ = static_cast<std::uint8_t>(unmultiplied(value, opacity));
+            }
+            if (hasOpacity) *sample++ = static_cast<std::uint8_t>(opacity);
+        }
+    });
 }
 
 }  // namespace adaptiso

@@ -4,10 +4,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <functional>
+#include <optional>
 
+#include "Canvas.h"
 #include "Scene.h"
 #include "Slices.h"
 #include "SurfaceRenderer.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Report/Page.h"
 
@@ -52,6 +56,24 @@ ReportColor surfaceColor(std::size_t n) {
     return kSurfaces[n % kSurfaces.size()];
 }
 
+TriangleMesh pointMarks(const std::vector<Vec3>& points, double radiusMm) {
+    constexpr std::array<Triangle, 8> kFaces{
+        {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+    TriangleMesh marks;
+    for (const Vec3& point : points) {
+        const auto first = static_cast<VertexId>(marks.points.size());
+        for (int corner = 0; corner < 6; ++corner) {
+            Vec3 at = point;
+            at[corner / 2] += corner % 2 == 0 ? radiusMm : -radiusMm;
+            marks.points.push_back(at);
+        }
+        for (const Triangle& t : kFaces) {
+            marks.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        }
+    }
+    return marks;
+}
+
 std::vector<ReportFact> imageFacts(const std::string& name, const std::string& format,
                                    const ImageGeometry& geometry) {
     const Vec3 spacing = geometry.spacingMm();
@@ -78,8 +100,6 @@ std::string reportDate() {
 
 namespace {
 
-constexpr ReportColor kPlain{226, 205, 190};
-
 bool isDrawn(const Scene& scene) {
     return !scene.isEmpty() && (!scene.face || scene.hasTriangles());
 }
@@ -87,20 +107,28 @@ bool isDrawn(const Scene& scene) {
 }  // namespace
 
 std::vector<Picture> drawPictures(const Report& report) {
-    std::vector<Picture> pictures;
-    const auto add = [&](std::optional<Picture> picture) {
-        if (picture) pictures.push_back(std::move(*picture));
-    };
-    if (report.histogram) pictures.push_back(histogramPicture(*report.histogram));
+    using Draw = std::function<std::optional<Picture>()>;
+    std::vector<Draw> draws;
+    if (report.histogram) draws.push_back([&] { return histogramPicture(*report.histogram); });
     const Scene scene = makeScene(report);
     if (isDrawn(scene)) {
-        add(spotPicture(report, scene));
-        for (const int axis : {2, 1, 0}) add(contourPicture(report, scene, axis));
-        if (report.areRegions) {
-            add(regionsPicture(scene));
-        } else {
-            for (std::size_t n = 0; n < scene.surfaces.size(); ++n) add(sixSidesPicture(scene, n));
+        draws.push_back([&] { return spotPicture(report, scene); });
+        for (const int axis : {2, 1, 0}) {
+            draws.push_back([&, axis] { return contourPicture(report, scene, axis); });
         }
+        draws.push_back([&] { return alignmentPicture(scene); });
+        if (report.areRegions) draws.push_back([&] { return regionsPicture(scene); });
+        for (std::size_t n = 0; n < scene.surfaces.size() && !report.areRegions; ++n) {
+            if (scene.surfaces[n].areMarks) continue;
+            draws.push_back([&, n] { return sixSidesPicture(scene, n); });
+        }
+    }
+    std::vector<std::optional<Picture>> drawn(draws.size());
+    parallelForPieces(std::ssize(draws), 1,
+                      [&](std::int64_t begin, std::int64_t) { drawn[begin] = draws[begin](); });
+    std::vector<Picture> pictures;
+    for (std::optional<Picture>& picture : drawn) {
+        if (picture) pictures.push_back(std::move(*picture));
     }
     return pictures;
 }
@@ -110,10 +138,11 @@ std::vector<Picture> drawViews(const Report& report, const ViewOptions& options)
     std::vector<Picture> pictures;
     if (!isDrawn(scene)) return pictures;
     if (report.areRegions) return {viewPicture(scene.surfaces, "view-1.png", options)};
-    for (const SceneSurface& surface : scene.surfaces) {
+    for (std::size_t n = 0; n < scene.surfaces.size(); ++n) {
+        if (scene.surfaces[n].areMarks) continue;
         const std::string name = "view-" + std::to_string(pictures.size() + 1) + ".png";
-        SceneSurface alone = surface;
-        if (!report.surfaces[pictures.size()].color) alone.color = kPlain;
+        SceneSurface alone = scene.surfaces[n];
+        if (!report.surfaces[n].color) alone.color = kPlain;
         pictures.push_back(viewPicture({alone}, name, options));
     }
     return pictures;

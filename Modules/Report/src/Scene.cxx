@@ -68,6 +68,7 @@ Scene makeScene(const Report& report) {
         surface.color = given.color.value_or(surfaceColor(scene.surfaces.size()));
         surface.mesh = SceneMesh::of(given.mesh);
         surface.triangles = std::ssize(given.mesh.triangles);
+        surface.areMarks = given.areMarks;
         if (given.valuesMm.size() == given.mesh.points.size()) surface.valuesMm = given.valuesMm;
         for (const double value : surface.valuesMm) largest = std::max(largest, value);
         scene.surfaces.push_back(std::move(surface));

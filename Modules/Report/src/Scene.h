@@ -134,6 +134,7 @@ struct SceneSurface {
     double largestValueMm = 0;         ///< of all surfaces: one scale of colours
     std::string valuesAre{};           ///< as Report has it
     std::int64_t triangles = 0;        ///< of the surface as given
+    bool areMarks = false;             ///< as Report has it
     /// Storage of valuesMm when not in the report.
     std::shared_ptr<const std::vector<double>> ownValues{};
 };

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
 
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/PortableMath.h"
 
 namespace adaptiso {
@@ -16,7 +18,7 @@ namespace adaptiso {
 namespace {
 
 constexpr ReportColor kBack{214, 69, 65};
-constexpr double kFarBehind = -std::numeric_limits<double>::infinity();
+constexpr float kFarBehind = -std::numeric_limits<float>::infinity();
 
 /// A corner as the view sees it: pixels, and mm towards the viewer.
 struct Corner {
@@ -26,20 +28,20 @@ struct Corner {
 /// A triangle as the view sees it.
 struct ViewedFace {
     Corner a, b, c;
-    double area = 0;  ///< twice; positive: from its back, as y runs down
+    double area;     ///< twice; positive: from its back, as y runs down
+    double perArea;  ///< 1 / area
 
-    ViewedFace() = default;
     ViewedFace(const Corner& first, const Corner& second, const Corner& third)
         : a(first),
           b(second),
           c(third),
-          area((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) {}
+          area((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)),
+          perArea(1 / area) {}
 
-    /// The weights of the corners at the middle of a pixel.
-    std::array<double, 3> weights(int x, int y) const {
-        const double px = x + 0.5, py = y + 0.5;
-        const double u = ((b.x - px) * (c.y - py) - (b.y - py) * (c.x - px)) / area;
-        const double v = ((c.x - px) * (a.y - py) - (c.y - py) * (a.x - px)) / area;
+    /// The weights of the corners at a place.
+    std::array<double, 3> weights(double x, double y) const {
+        const double u = ((b.x - x) * (c.y - y) - (b.y - y) * (c.x - x)) * perArea;
+        const double v = ((c.x - x) * (a.y - y) - (c.y - y) * (a.x - x)) * perArea;
         return {u, v, 1 - u - v};
     }
 };
@@ -52,10 +54,6 @@ struct PixelRange {
     static PixelRange between(double p, double q, double r, int size) {
         return {std::max(0, static_cast<int>(std::ceil(std::min({p, q, r}) - 0.5))),
                 std::min(size - 1, static_cast<int>(std::floor(std::max({p, q, r}) - 0.5)))};
-    }
-    void add(const PixelRange& other) {
-        first = std::min(first, other.first);
-        last = std::max(last, other.last);
     }
     /// Less what lies beyond an edge of a face, but for a pixel's width.
     void cut(const ViewedFace& face, const Corner& from, const Corner& to, int y) {
@@ -89,13 +87,46 @@ struct Frame {
     int top = 0, rows = 0;      ///< drawn
 };
 
-/// Rows of a picture before they are averaged down.
+/// Points of a surface as a view sees them: finer pixels of the whole picture, and mm towards the
+/// viewer from its middle.
+using ViewedPoints = std::vector<std::array<float, 3>>;
+
+std::vector<ViewedPoints> viewedPoints(std::span<const SceneSurface> surfaces, const Frame& frame,
+                                       const View& view, const Style& style) {
+    const Vec3 right = view.right();
+    const double perMm = style.finer / frame.mmPerPixel;
+    std::vector<ViewedPoints> viewed;
+    for (const SceneSurface& surface : surfaces) {
+        constexpr std::int64_t kGrain = 1 << 14;
+        ViewedPoints& points = viewed.emplace_back(surface.mesh.pointCount());
+        parallelForPieces(std::ssize(points), kGrain, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t v = begin; v < end; ++v) {
+                const Vec3 p = surface.mesh.point(static_cast<VertexId>(v)) - frame.middle;
+                points[v] = {
+                    static_cast<float>(style.finer * frame.width / 2.0 + perMm * dot(p, right)),
+                    static_cast<float>(style.finer * frame.height / 2.0 - perMm * dot(p, view.up)),
+                    static_cast<float>(dot(p, view.toViewer))};
+            }
+        });
+    }
+    return viewed;
+}
+
+/// Rows of a picture, in finer pixels: each shows the triangle nearest to the viewer. A pixel is
+/// the mean of its finer ones; each triangle is shaded there once.
 class Raster {
     static constexpr std::uint32_t kNobody = 0xFFFFFFFF;
+    using Color = std::array<double, 3>;
 
 public:
-    Raster(const Frame& frame, const View& view, const Style& style)
-        : view_(view),
+    /// \param points, normals  of each surface
+    Raster(const Frame& frame, const View& view, const Style& style,
+           std::span<const SceneSurface> surfaces, std::span<const ViewedPoints> points,
+           std::span<const VertexNormals> normals)
+        : surfaces_(surfaces),
+          points_(points),
+          normals_(normals),
+          view_(view),
           style_(style),
           right_(view.right()),
           width_(frame.width * style.finer),
@@ -106,31 +137,11 @@ public:
           light_(normalized(0.9 * view.toViewer + 0.45 * view.up - 0.35 * right_)),
           highlight_(normalized(light_ + view.toViewer)),
           mmPerPixel_(frame.mmPerPixel / style.finer),
-          colors_(static_cast<std::size_t>(width_) * rows_, style.ground),
-          depths_(colors_.size(), kFarBehind),
-          owners_(colors_.size(), kNobody) {}
+          depths_(static_cast<std::size_t>(width_) * rows_, kFarBehind),
+          owners_(depths_.size(), kNobody) {}
 
-    /// Finds the triangle of every pixel, then shades each pixel once.
-    void draw(const SceneSurface& surface, const VertexNormals& normals) {
-        surface_ = &surface;
-        normals_ = &normals;
-        drawsEdges_ = style_.drawsEdges ? *style_.drawsEdges : meanTrianglePixels() > 60;
-        PixelRange columns{width_, -1}, rows{rows_, -1};
-        surface.mesh.forEachTriangle([&](const Triangle& t) {
-            const ViewedFace face(corner(t[0]), corner(t[1]), corner(t[2]));
-            if (face.area == 0) return;  // edge-on
-            const auto across = PixelRange::between(face.a.x, face.b.x, face.c.x, width_);
-            const auto down = PixelRange::between(face.a.y, face.b.y, face.c.y, rows_);
-            if (across.first > across.last || down.first > down.last) return;
-            columns.add(across);
-            rows.add(down);
-            cover(face, across, down,
-                  static_cast<std::uint32_t>(&t - surface.mesh.lps().triangles.data()));
-        });
-        shadeCovered(columns, rows);
-    }
-
-    Rendering finish() const {
+    Rendering draw() {
+        for (const SceneSurface& surface : surfaces_) cover(surface);
         Rendering result{width_ / style_.finer,
                          rows_ / style_.finer,
                          middle_,
@@ -139,73 +150,154 @@ public:
                          {},
                          {}};
         for (int y = 0; y < result.height; ++y) {
-            for (int x = 0; x < result.width; ++x) averagePixel(x, y, result);
+            for (int x = 0; x < result.width; ++x) shadePixel(x, y, result);
         }
         return result;
     }
 
 private:
-    Corner corner(VertexId v) const {
-        const Vec3 p = surface_->mesh.point(v) - middle_;
-        return {width_ / 2.0 + dot(p, right_) / mmPerPixel_,
-                height_ / 2.0 - dot(p, view_.up) / mmPerPixel_ - top_, dot(p, view_.toViewer)};
+    /// Triangles of one surface, among those of all.
+    struct Part {
+        const SceneSurface* surface;
+        const ViewedPoints* points;
+        const VertexNormals* normals;
+        std::uint32_t first;
+        bool drawsEdges;
+    };
+    /// Finer pixels of one pixel that show one triangle.
+    struct Share {
+        std::uint32_t owner;
+        int count;
+        double x, y;  ///< sums of their middles
+    };
+
+    ViewedFace viewed(const ViewedPoints& points, const Triangle& t) const {
+        const auto corner = [&](VertexId v) {
+            return Corner{points[v][0], double{points[v][1]} - top_, points[v][2]};
+        };
+        return {corner(t[0]), corner(t[1]), corner(t[2])};
     }
 
-    double meanTrianglePixels() const {
+    double meanTrianglePixels(const SceneSurface& surface) const {
         const auto count =
-            static_cast<double>(std::max<std::int64_t>(surface_->mesh.triangleCount(), 1));
-        return surfaceArea(surface_->mesh) / count / (mmPerPixel_ * mmPerPixel_);
+            static_cast<double>(std::max<std::int64_t>(surface.mesh.triangleCount(), 1));
+        return surfaceArea(surface.mesh) / count / (mmPerPixel_ * mmPerPixel_);
     }
 
-    std::size_t pixel(int x, int y) const { return static_cast<std::size_t>(y) * width_ + x; }
+    void cover(const SceneSurface& surface) {
+        const std::vector<Triangle>& triangles = surface.mesh.lps().triangles;
+        const std::uint32_t first = end_;
+        end_ += static_cast<std::uint32_t>(triangles.size());
+        const ViewedPoints& points = points_[parts_.size()];
+        parts_.push_back(
+            {&surface, &points, &normals_[parts_.size()], first,
+             style_.drawsEdges ? *style_.drawsEdges : meanTrianglePixels(surface) > 60});
+        surface.mesh.forEachTriangle([&](const Triangle& t) {
+            const auto y = std::minmax({points[t[0]][1], points[t[1]][1], points[t[2]][1]});
+            if (y.second < static_cast<float>(top_) || y.first > static_cast<float>(top_ + rows_))
+                return;
+            const ViewedFace face = viewed(points, t);
+            if (face.area == 0) return;  // edge-on
+            const auto across = PixelRange::between(face.a.x, face.b.x, face.c.x, width_);
+            const auto down = PixelRange::between(face.a.y, face.b.y, face.c.y, rows_);
+            if (across.first > across.last || down.first > down.last) return;
+            cover(face, across, down, first + static_cast<std::uint32_t>(&t - triangles.data()));
+        });
+    }
 
     void cover(const ViewedFace& face, const PixelRange& across, const PixelRange& down,
-               std::uint32_t triangle) {
+               std::uint32_t owner) {
         for (int y = down.first; y <= down.last; ++y) {
             PixelRange row = across;
             row.cut(face, face.a, face.b, y);
             row.cut(face, face.b, face.c, y);
             row.cut(face, face.c, face.a, y);
             for (int x = row.first; x <= row.last; ++x) {
-                const auto [u, v, w] = face.weights(x, y);
+                const auto [u, v, w] = face.weights(x + 0.5, y + 0.5);
                 if (u < 0 || v < 0 || w < 0) continue;
-                const double depth = u * face.a.depth + v * face.b.depth + w * face.c.depth;
-                const std::size_t n = pixel(x, y);
+                const auto depth =
+                    static_cast<float>(u * face.a.depth + v * face.b.depth + w * face.c.depth);
+                const std::size_t n = static_cast<std::size_t>(y) * width_ + x;
                 if (!(depth > depths_[n])) continue;
                 depths_[n] = depth;
-                owners_[n] = triangle;
+                owners_[n] = owner;
             }
         }
     }
 
-    void shadeCovered(const PixelRange& columns, const PixelRange& rows) {
-        const std::vector<Triangle>& triangles = surface_->mesh.lps().triangles;
-        const std::span<const double> values = surface_->valuesMm;
-        std::uint32_t last = kNobody;
-        ViewedFace face;
-        Vec3 flat;
-        double edgePart = 0;
-        for (int y = rows.first; y <= rows.last; ++y) {
-            for (int x = columns.first; x <= columns.last; ++x) {
-                std::uint32_t& owner = owners_[pixel(x, y)];
-                if (owner == kNobody) continue;
-                const Triangle& t = triangles[owner];
-                if (owner != last) {
-                    last = owner;
-                    face = ViewedFace(corner(t[0]), corner(t[1]), corner(t[2]));
-                    if (style_.isFlat) flat = flatNormal(face.a, face.b, face.c);
-                    edgePart = style_.halfEdge * longestEdge(face) / std::abs(face.area);
-                }
-                owner = kNobody;
-                const auto [u, v, w] = face.weights(x, y);
-                const auto normal = [&](int n) { return toVec3((*normals_)[t[n]]); };
-                const auto value = [&](int n) { return values.empty() ? 0 : values[t[n]]; };
-                const bool isEdge = drawsEdges_ && std::min({u, v, w}) < edgePart;
-                colors_[pixel(x, y)] =
-                    shade(style_.isFlat ? flat : u * normal(0) + v * normal(1) + w * normal(2),
-                          u * value(0) + v * value(1) + w * value(2), face.area > 0, isEdge);
+    /// Calls body(n, x, y) for the finer pixels of a pixel that show a triangle.
+    template <class Body>
+    void forEachCovered(int x, int y, const Body& body) const {
+        const int finer = style_.finer;
+        for (int dy = y * finer; dy < (y + 1) * finer; ++dy) {
+            for (int dx = x * finer; dx < (x + 1) * finer; ++dx) {
+                const std::size_t n = static_cast<std::size_t>(dy) * width_ + dx;
+                if (owners_[n] != kNobody) body(n, dx + 0.5, dy + 0.5);
             }
         }
+    }
+
+    void shadePixel(int x, int y, Rendering& result) {
+        const int all = style_.finer * style_.finer;
+        int covered = 0;
+        float depth = kFarBehind;
+        shares_.clear();
+        forEachCovered(x, y, [&](std::size_t n, double px, double py) {
+            ++covered;
+            depth = std::max(depth, depths_[n]);
+            auto share = std::ranges::find(shares_, owners_[n], &Share::owner);
+            if (share == shares_.end()) share = shares_.insert(share, {owners_[n], 0, 0, 0});
+            ++share->count;
+            share->x += px;
+            share->y += py;
+        });
+        Color sum{};
+        for (const Share& share : shares_) addColor(share, x, y, sum);
+        ReportColor color;
+        for (std::size_t i = 0; i < color.size(); ++i) {
+            const double mean = (sum[i] + (all - covered) * style_.ground[i]) / all;
+            color[i] = static_cast<std::uint8_t>(mean + 0.5);
+        }
+        result.colors.push_back(color);
+        result.opacity.push_back(static_cast<std::uint8_t>((255 * covered + all / 2) / all));
+        result.depthMm.push_back(depth);
+    }
+
+    /// Adds the color of a triangle, times its share of a pixel.
+    void addColor(const Share& share, int x, int y, Color& sum) const {
+        const Part& part =
+            *std::prev(std::ranges::upper_bound(parts_, share.owner, {}, &Part::first));
+        const SceneSurface& surface = *part.surface;
+        const Triangle& t = surface.mesh.lps().triangles[share.owner - part.first];
+        const ViewedFace face = viewed(*part.points, t);
+        const auto [u, v, w] = face.weights(share.x / share.count, share.y / share.count);
+        Vec3 normal;
+        if (style_.isFlat) {
+            normal = flatNormal(face.a, face.b, face.c);
+        } else {
+            const auto at = [&](int n) { return toVec3((*part.normals)[t[n]]); };
+            normal = u * at(0) + v * at(1) + w * at(2);
+        }
+        double value = 0;
+        if (const auto& values = surface.valuesMm; !values.empty()) {
+            value = u * values[t[0]] + v * values[t[1]] + w * values[t[2]];
+        }
+        int edges = 0;
+        if (part.drawsEdges) {
+            const double near = style_.halfEdge * longestEdge(face) / std::abs(face.area);
+            forEachCovered(x, y, [&](std::size_t n, double px, double py) {
+                if (owners_[n] != share.owner) return;
+                edges += std::ranges::min(face.weights(px, py)) < near ? 1 : 0;
+            });
+        }
+        const bool isBack = face.area > 0;
+        if (edges > 0) add(edges, shade(surface, normal, value, isBack, true), sum);
+        if (edges < share.count) {
+            add(share.count - edges, shade(surface, normal, value, isBack, false), sum);
+        }
+    }
+    static void add(int times, const Color& color, Color& sum) {
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += times * color[i];
     }
 
     static double longestEdge(const ViewedFace& f) {
@@ -222,11 +314,12 @@ private:
         return areaVector2(inSpace(a), inSpace(b), inSpace(c));
     }
 
-    ReportColor shade(Vec3 normal, double value, bool isBack, bool isEdge) const {
+    Color shade(const SceneSurface& surface, Vec3 normal, double value, bool isBack,
+                bool isEdge) const {
         normal = normalized(normal);
         if (dot(normal, view_.toViewer) < 0) normal = -normal;
-        ReportColor color = surface_->color;
-        if (!surface_->valuesMm.empty()) color = viridis(value / surface_->largestValueMm);
+        ReportColor color = surface.color;
+        if (!surface.valuesMm.empty()) color = viridis(value / surface.largestValueMm);
         if (isBack) color = kBack;
         const double lit = std::max(0.0, dot(normal, light_));
         double light = 0.45 + 0.55 * lit, shine = 0;
@@ -237,47 +330,27 @@ private:
             shine = 16 * eighth * eighth * eighth;
         }
         if (isEdge) light *= style_.isForPrint ? 0.45 : 0.72;
-        for (std::uint8_t& channel : color) {
-            channel =
-                static_cast<std::uint8_t>(std::lround(std::min(255.0, channel * light + shine)));
+        Color result;
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            result[i] = std::min(255.0, color[i] * light + shine);
         }
-        return color;
+        return result;
     }
 
-    void averagePixel(int x, int y, Rendering& result) const {
-        std::array<int, 3> sum{};
-        int covered = 0;
-        double depth = kFarBehind;
-        const int finer = style_.finer, samples = finer * finer;
-        for (int dy = 0; dy < finer; ++dy) {
-            for (int dx = 0; dx < finer; ++dx) {
-                const std::size_t n =
-                    static_cast<std::size_t>(y * finer + dy) * width_ + x * finer + dx;
-                for (std::size_t i = 0; i < 3; ++i) sum[i] += colors_[n][i];
-                depth = std::max(depth, depths_[n]);
-                covered += int{depths_[n] > kFarBehind};
-            }
-        }
-        const auto mean = [samples](int of) {
-            return static_cast<std::uint8_t>((of + samples / 2) / samples);
-        };
-        result.colors.push_back({mean(sum[0]), mean(sum[1]), mean(sum[2])});
-        result.opacity.push_back(mean(255 * covered));
-        result.depthMm.push_back(depth);
-    }
-
-    const SceneSurface* surface_ = nullptr;  ///< that is drawn
-    const VertexNormals* normals_ = nullptr;
+    std::span<const SceneSurface> surfaces_;
+    std::span<const ViewedPoints> points_;
+    std::span<const VertexNormals> normals_;
     const View& view_;
     const Style& style_;
     Vec3 right_;
     int width_, height_, top_, rows_;  ///< finer pixels
     Vec3 middle_, light_, highlight_;
     double mmPerPixel_;
-    bool drawsEdges_ = false;
-    std::vector<ReportColor> colors_;
-    std::vector<double> depths_;
-    std::vector<std::uint32_t> owners_;  ///< triangles of `surface_` that are not shaded yet
+    std::vector<float> depths_;
+    std::vector<std::uint32_t> owners_;
+    std::vector<Part> parts_;
+    std::uint32_t end_ = 0;      ///< triangles of all parts
+    std::vector<Share> shares_;  ///< of one pixel
 };
 
 }  // namespace
@@ -322,15 +395,15 @@ VertexNormals vertexNormals(const SceneMesh& mesh) {
 }
 
 Rendering render(std::span<const SceneSurface> surfaces, std::span<const VertexNormals> normals,
-                 const BoundingBox& box, const View& view, int size) {
+                 const BoundingBox& box, const View& view, int size,
+                 std::optional<bool> drawsEdges) {
     const Vec3 extent = box.size();
-    const Style style;
+    const Style style{.drawsEdges = drawsEdges};
     const double mmPerPixel =
         1.06 * std::max({extent.x, extent.y, extent.z, 1e-9}) / (size * style.finer) * style.finer;
-    Raster raster({0.5 * (box.minimum + box.maximum), mmPerPixel, size, size, 0, size}, view,
-                  style);
-    for (std::size_t n = 0; n < surfaces.size(); ++n) raster.draw(surfaces[n], normals[n]);
-    return raster.finish();
+    const Frame frame{0.5 * (box.minimum + box.maximum), mmPerPixel, size, size, 0, size};
+    const std::vector<ViewedPoints> points = viewedPoints(surfaces, frame, view, style);
+    return Raster(frame, view, style, surfaces, points, normals).draw();
 }
 
 namespace {
@@ -363,18 +436,17 @@ BoundingBox boxOf(const SceneSurface& surface, const BoundingBox& otherwise) {
     return surface.mesh.isEmpty() ? otherwise : boxOf(surface.mesh);
 }
 
-/// Surfaces from six sides, below a line of title.
-void drawSixSides(Canvas& canvas, const Scene& scene, std::span<const SceneSurface> surfaces,
-                  const BoundingBox& box) {
-    std::vector<VertexNormals> normals(surfaces.size());
-    parallelForPieces(std::ssize(surfaces), 1, [&](std::int64_t begin, std::int64_t) {
-        normals[begin] = vertexNormals(surfaces[begin].mesh);
-    });
+/// What is drawn from a side.
+using RenderSide = std::function<Rendering(const View&)>;
+
+/// Six sides, below a line of title.
+/// \param toleranceMm  how far behind what is drawn a spot may lie, to be ringed
+void drawSixSides(Canvas& canvas, const Scene& scene, const RenderSide& renderSide,
+                  double toleranceMm) {
     std::array<Rendering, 6> renderings;
     parallelForPieces(6, 1, [&](std::int64_t begin, std::int64_t) {
-        renderings[begin] = render(surfaces, normals, box, sixViews()[begin], kViewSize);
+        renderings[begin] = renderSide(sixViews()[begin]);
     });
-    const double toleranceMm = 0.02 * norm(box.size());
     for (int side = 0; side < 6; ++side) {
         const View& view = sixViews()[side];
         const Rendering& rendering = renderings[side];
@@ -391,6 +463,37 @@ void drawSixSides(Canvas& canvas, const Scene& scene, std::span<const SceneSurfa
         canvas.text({left + 30.0, base}, view.leftSide, 14, kFaint);
         canvas.text({left + kViewSize - 30.0, base}, view.rightSide, 14, kFaint, Anchor::Right);
     }
+}
+
+std::vector<VertexNormals> normalsOf(std::span<const SceneSurface> surfaces) {
+    std::vector<VertexNormals> normals(surfaces.size());
+    parallelForPieces(std::ssize(surfaces), 1, [&](std::int64_t begin, std::int64_t) {
+        normals[begin] = vertexNormals(surfaces[begin].mesh);
+    });
+    return normals;
+}
+
+void drawSixSides(Canvas& canvas, const Scene& scene, std::span<const SceneSurface> surfaces,
+                  const BoundingBox& box) {
+    const std::vector<VertexNormals> normals = normalsOf(surfaces);
+    drawSixSides(
+        canvas, scene,
+        [&](const View& view) { return render(surfaces, normals, box, view, kViewSize); },
+        0.02 * norm(box.size()));
+}
+
+/// `front`, with what lies behind it seen through it.
+Rendering seenThrough(Rendering front, const Rendering& behind) {
+    constexpr double kThrough = 0.6;
+    for (std::size_t n = 0; n < front.colors.size(); ++n) {
+        if (behind.opacity[n] == 0) continue;
+        const double part = behind.depthMm[n] >= front.depthMm[n] ? 1 : kThrough;
+        for (std::size_t i = 0; i < 3; ++i) {
+            front.colors[n][i] = static_cast<std::uint8_t>(
+                std::lround(std::lerp(front.colors[n][i], behind.colors[n][i], part)));
+        }
+    }
+    return front;
 }
 
 constexpr int kSixWidth = 3 * (kViewSize + kViewGap) + kViewGap;
@@ -422,6 +525,47 @@ Picture sixSidesPicture(const Scene& scene, std::size_t n) {
         canvas.png(),
         canvas.width(),
         canvas.height()};
+}
+
+std::optional<Picture> alignmentPicture(const Scene& scene) {
+    const std::span<const SceneSurface> all = scene.surfaces;
+    const auto first = std::ranges::find(all, true, &SceneSurface::areMarks);
+    const std::ptrdiff_t at = first - all.begin();
+    if (at == 0 || at == std::ssize(all)) return std::nullopt;
+    SceneSurface surface = all[at - 1];
+    surface.color = kPlain;
+    surface.valuesMm = {};
+    const std::span<const SceneSurface> base(&surface, 1), marks = all.subspan(at);
+    const std::vector<VertexNormals> baseNormals = normalsOf(base), markNormals = normalsOf(marks);
+    const BoundingBox box = boxOf(surface, scene.box);
+
+    Canvas canvas(kSixWidth, kSixHeight, kWhite);
+    double x = 10;
+    std::string names;
+    const auto addToLegend = [&](const SceneSurface& drawn) {
+        canvas.rectangle({x, 14}, 22, 12, drawn.color);
+        canvas.text({x + 30, 26}, drawn.name, 16, kInk, Anchor::Left, true);
+        x += 70 + canvas.textWidth(drawn.name, 16);
+    };
+    addToLegend(surface);
+    for (const SceneSurface& drawn : marks) {
+        addToLegend(drawn);
+        addPart(names, drawn.name);
+    }
+    drawSixSides(
+        canvas, scene,
+        [&](const View& view) {
+            return seenThrough(render(base, baseNormals, box, view, kViewSize, false),
+                               render(marks, markNormals, box, view, kViewSize, false));
+        },
+        0.02 * norm(box.size()));
+    return Picture{"alignment.png",
+                   "Alignment: " + names + " and " + surface.name,
+                   "The surface " + surface.name + " from six sides, with " + names +
+                       "; what lies behind it is seen through it, paler.",
+                   canvas.png(),
+                   canvas.width(),
+                   canvas.height()};
 }
 
 Picture regionsPicture(const Scene& scene) {
@@ -493,23 +637,24 @@ Picture viewPicture(std::vector<SceneSurface> surfaces, const std::string& name,
     for (const SceneSurface& surface : surfaces) normals.push_back(normalsToShow(surface.mesh));
     const View view = viewFrom(options.azimuthDeg, options.elevationDeg);
     const Frame whole = tightFrame(surfaces, view, options.width, options.height);
-    Style style{.finer = 3,
+    // a large picture is seen smaller than its pixels
+    constexpr int kLarge = 2'000'000;
+    Style style{.finer = options.width * options.height > kLarge ? 2 : 3,
                 .ground = options.background.value_or(kBlack),
                 .isFlat = options.shading != Shading::Smooth,
                 .drawsEdges = options.shading == Shading::Edges,
                 .isForPrint = true};
     style.halfEdge = style.finer * std::max(options.width, options.height) / 4000.0;
 
-    constexpr int kFinerPixels = 4'000'000;  // at a time, by each thread
+    const std::vector<ViewedPoints> points = viewedPoints(surfaces, whole, view, style);
+    constexpr int kFinerPixels = 500'000;  // at a time, by each thread: few enough for its cache
     const int rows = std::max(1, kFinerPixels / (style.finer * style.finer * options.width));
     std::vector<Rendering> bands((options.height + rows - 1) / rows);
     parallelForPieces(std::ssize(bands), 1, [&](std::int64_t begin, std::int64_t) {
         Frame band = whole;
         band.top = static_cast<int>(begin) * rows;
         band.rows = std::min(rows, options.height - band.top);
-        Raster raster(band, view, style);
-        for (std::size_t n = 0; n < surfaces.size(); ++n) raster.draw(surfaces[n], normals[n]);
-        bands[begin] = raster.finish();
+        bands[begin] = Raster(band, view, style, surfaces, points, normals).draw();
         bands[begin].depthMm = {};
     });
     std::vector<ReportColor> colors;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,12 +46,18 @@ VertexNormals vertexNormals(const SceneMesh& mesh);
 /// from their back are red. Edges are drawn where triangles are large enough to tell them apart.
 /// \param normals  of each surface
 /// \param box      what fills the picture, whatever the view
+/// \param drawsEdges  default: where triangles are large enough
 Rendering render(std::span<const SceneSurface> surfaces, std::span<const VertexNormals> normals,
-                 const BoundingBox& box, const View& view, int size);
+                 const BoundingBox& box, const View& view, int size,
+                 std::optional<bool> drawsEdges = {});
 
 /// Surface number `n` from six sides, with the spots that can be seen on it ringed; its values in
 /// colour, with a colour bar.
 Picture sixSidesPicture(const Scene& scene, std::size_t n);
+
+/// Marks (SceneSurface::areMarks) with the last surface before them, likewise; what lies behind it
+/// is seen through it. None without marks.
+std::optional<Picture> alignmentPicture(const Scene& scene);
 
 /// All surfaces together, each in its colour, likewise.
 Picture regionsPicture(const Scene& scene);

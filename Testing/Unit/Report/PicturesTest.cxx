@@ -75,6 +75,35 @@ TEST(Pictures, AreTheSameForAnyNumberOfThreads) {
     for (std::size_t n = 0; n < many.size(); ++n) EXPECT_EQ(many[n].png, alone[n].png);
 }
 
+TEST(Pictures, MarksAreShownWithTheSurfaceBeforeThem) {
+    Report report;
+    report.surfaces.push_back({"skin", testing::cubeMesh()});
+    const std::string plain = [&] {
+        Report marked = report;
+        marked.surfaces.push_back({"electrodes", {}});
+        marked.surfaces.back().areMarks = true;
+        for (const Picture& picture : drawPictures(marked)) {
+            if (picture.name == "alignment.png") return picture.png;
+        }
+        return std::string();
+    }();
+    const BoundingBox box = boundingBox(report.surfaces[0].mesh);
+    const Vec3 middle = 0.5 * (box.minimum + box.maximum), size = box.size();
+    report.surfaces.push_back({"electrodes", pointMarks({box.maximum}, 0.05 * size.x)});
+    report.surfaces.push_back({"sources", pointMarks({middle}, 0.05 * size.x)});
+    EXPECT_EQ(std::ssize(report.surfaces[1].mesh.triangles), 8);
+    for (const std::size_t marks : {1, 2}) report.surfaces[marks].areMarks = true;
+    const std::vector<Picture> pictures = drawPictures(report);
+    const std::set<std::string> names = namesOf(pictures);
+    EXPECT_TRUE(names.contains("alignment.png"));
+    EXPECT_TRUE(names.contains("surface-1.png"));
+    EXPECT_FALSE(names.contains("surface-2.png"));
+    for (const Picture& picture : pictures) {
+        if (picture.name == "alignment.png") EXPECT_NE(picture.png, plain);
+    }
+    EXPECT_EQ(drawViews(report, {.width = 40, .height = 30}).size(), 1U);
+}
+
 TEST(Views, AreTheSameForAnyNumberOfThreads) {
     const Example example;
     const ViewOptions options{.azimuthDeg = 30, .elevationDeg = 20, .width = 900, .height = 900};

@@ -24,6 +24,8 @@ struct Picture {
 ///   contours-axial, -coronal, -sagittal  where the surfaces cut slices of the image, as MNE's
 ///                                        plot_bem shows them
 ///   spots                                three slices through each of the first spots
+///   alignment                            marks and the last surface before them from six sides:
+///                                        electrodes on the skin, sources seen through it
 ///   surface-N                            each surface from six sides, what faces away from the
 ///                                        viewer in red; values in colour, with a colour bar
 ///   regions                              in their stead, of regions: all together
@@ -51,8 +53,9 @@ struct ViewOptions {
     Shading shading = Shading::Smooth;
 };
 
-/// Each surface by itself (regions: all together) from one side and without words, as large as the
-/// picture allows: "view-1.png", ... There is no perspective. As drawPictures() otherwise.
+/// Each surface but marks by itself (regions: all together) from one side and without words, as
+/// large as the picture allows: "view-1.png", ... There is no perspective. As drawPictures()
+/// otherwise.
 std::vector<Picture> drawViews(const Report& report, const ViewOptions& options);
 
 struct PageOptions {

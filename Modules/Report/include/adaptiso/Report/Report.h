@@ -75,7 +75,11 @@ struct ReportSurface {
     /// Closed and around the brain alone: neither it nor what it holds shows a face.
     bool isWithinSkull = false;
     std::optional<ReportColor> color{};  ///< default: surfaceColor() of its number
+    bool areMarks = false;               ///< pointMarks() on or in the last surface that is none
 };
+
+/// A small octahedron at every point.
+TriangleMesh pointMarks(const std::vector<Vec3>& points, double radiusMm);
 
 /// The image that the surfaces belong to. The samples must live as long as the report.
 struct ReportVolume {
