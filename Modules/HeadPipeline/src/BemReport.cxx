@@ -196,7 +196,7 @@ void addSources(const BemModel& model, Report& report) {
     for (const SourceSpace& space : model.sources->spaces) {
         for (const std::int64_t point : space.used) points.push_back(space.surface.points[point]);
     }
-    if (!points.empty()) addMarks("sources", points, 1, report);
+    if (!points.empty()) addMarks("sources", points, 1.5, report);
 }
 
 }  // namespace

@@ -70,7 +70,6 @@ private:
 constexpr ReportColor kWhite{255, 255, 255};
 constexpr ReportColor kBlack{0, 0, 0};
 constexpr ReportColor kInk{31, 41, 55};
-constexpr ReportColor kPlain{226, 205, 190};  ///< ivory, of surfaces without a colour
 constexpr ReportColor kFaint{150, 158, 170};
 constexpr ReportColor kAlarm{255, 72, 72};
 

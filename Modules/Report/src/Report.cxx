@@ -7,7 +7,6 @@
 #include <functional>
 #include <optional>
 
-#include "Canvas.h"
 #include "Scene.h"
 #include "Slices.h"
 #include "SurfaceRenderer.h"
@@ -99,6 +98,8 @@ std::string reportDate() {
 }
 
 namespace {
+
+constexpr ReportColor kPlain{226, 205, 190};
 
 bool isDrawn(const Scene& scene) {
     return !scene.isEmpty() && (!scene.face || scene.hasTriangles());

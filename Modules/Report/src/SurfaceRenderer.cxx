@@ -482,15 +482,16 @@ void drawSixSides(Canvas& canvas, const Scene& scene, std::span<const SceneSurfa
         0.02 * norm(box.size()));
 }
 
-/// `front`, with what lies behind it seen through it.
+/// `front`, with what lies behind it seen through it. \pre both are drawn on white
 Rendering seenThrough(Rendering front, const Rendering& behind) {
-    constexpr double kThrough = 0.6;
+    constexpr double kThrough = 0.5, kGround = 255;
     for (std::size_t n = 0; n < front.colors.size(); ++n) {
-        if (behind.opacity[n] == 0) continue;
+        const double covered = behind.opacity[n] / 255.0;
         const double part = behind.depthMm[n] >= front.depthMm[n] ? 1 : kThrough;
         for (std::size_t i = 0; i < 3; ++i) {
-            front.colors[n][i] = static_cast<std::uint8_t>(
-                std::lround(std::lerp(front.colors[n][i], behind.colors[n][i], part)));
+            const double color = behind.colors[n][i] - (1 - covered) * kGround;  // times `covered`
+            const double mean = (1 - part * covered) * front.colors[n][i] + part * color;
+            front.colors[n][i] = static_cast<std::uint8_t>(std::clamp(mean, 0.0, 255.0) + 0.5);
         }
     }
     return front;
@@ -533,7 +534,7 @@ std::optional<Picture> alignmentPicture(const Scene& scene) {
     const std::ptrdiff_t at = first - all.begin();
     if (at == 0 || at == std::ssize(all)) return std::nullopt;
     SceneSurface surface = all[at - 1];
-    surface.color = kPlain;
+    surface.color = {128, 128, 134};  // colours of marks stand out from it
     surface.valuesMm = {};
     const std::span<const SceneSurface> base(&surface, 1), marks = all.subspan(at);
     const std::vector<VertexNormals> baseNormals = normalsOf(base), markNormals = normalsOf(marks);
