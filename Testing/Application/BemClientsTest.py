@@ -226,15 +226,24 @@ class Frames(ClientTest):
         orig = nibabel.freesurfer.MGHImage(labels, affine)
         nibabel.save(orig, self.path("subjects/anna/mri/orig.mgz"))
         save(self.path("seg.nii"), labels, affine)
+        nibabel.save(orig, self.path("subjects/anna/mri/T1.mgz"))
+        x, y, z = CENTRE
         self.bem("--labels", "seg.nii", "--tissue", "brain=3", "--tissue", "skull=2", "--tissue",
                  "scalp=1", "--vertices", 300, "--voxel", 2, "-o", "model", "--subjects-dir",
-                 "subjects", "--subject", "anna")
+                 "subjects", "--subject", "anna", "--montage", "10-20", "--nasion", f"{x},{y + 92},{z}",
+                 f"--left-ear={x - 92},{y},{z}", f"--right-ear={x + 92},{y},{z}", "--pictures", "pictures")
         mne.make_bem_solution(mne.make_bem_model("anna", ico=None,
                                                  subjects_dir=self.path("subjects")))
         points, _ = mne.read_surface(self.path("subjects/anna/bem/outer_skin.surf"))
         to_tkras = orig.header.get_vox2ras_tkr() @ np.linalg.inv(affine)
         middle = to_tkras[:3, :3] @ CENTRE + to_tkras[:3, 3]
         self.assertLess(np.abs(np.linalg.norm(points - middle, axis=1) - 92).max(), 1)  # half a voxel
+        # README.md: in an mne.Report
+        report = mne.Report(title="anna")
+        report.add_image(self.path("pictures/alignment.png"), title="Alignment")
+        report.add_bem("anna", "Surfaces", subjects_dir=self.path("subjects"), decim=40, width=128)
+        report.save(self.path("mne.html"), open_browser=False)
+        self.assertIn("Alignment", self.path("mne.html").read_text())
 
     def test_gifti(self):
         affine = np.diag([4.0, 4, 4, 1])
