@@ -42,8 +42,8 @@ std::vector<Picture> writePictures(Report report, const std::string& program,
             .writeText(picture.png);
     };
     if (!options.pictures.empty()) {
-        std::ranges::for_each(pictures, write);
-        std::ranges::for_each(views, write);
+        std::for_each(pictures.begin(), pictures.end(), write);
+        std::for_each(views.begin(), views.end(), write);
     }
     if (!options.page.empty()) {
         outputs.emplace_back(options.page).writeText(htmlPage(report, pictures));

@@ -16,14 +16,12 @@
 #include <vector>
 
 #include "Common/ImageOptions.h"
+#include "Common/Naming.h"
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
 #include "Common/Verdict.h"
 #include "Programs.h"
-#include "adaptiso-labels/Masks.h"
-#include "adaptiso-labels/Pipeline.h"
 #include "adaptiso-labels/Regions.h"
-#include "adaptiso-labels/Run.h"
 #include "adaptiso-mesh/Info.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Volume.h"
@@ -32,6 +30,7 @@
 #include "adaptiso/ImageIO/ListSeries.h"
 #include "adaptiso/Json/OptionsJson.h"
 #include "adaptiso/LabelNames/LabelTable.h"
+#include "adaptiso/LabelPipeline/Masks.h"
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
@@ -213,16 +212,12 @@ Json affineJson(const ImageGeometry& geometry) {
 
 /// A label map as adaptiso-labels takes it: masks in a folder are joined to one.
 ReadVolume readMap(const std::string& path, const ReadOptions& read) {
-    labels::LabelsOptions options;
-    options.input = path;
-    options.read = read;
-    labels::LabelsRun run(options, {});
-    labels::findMasks(options, run);
-    if (options.masks.empty()) return readImage(path, read);
-    std::string format;
-    Volume map = labels::joinMasks(run, format);
-    return {std::move(map), format + ", " + counted(std::ssize(options.masks), "mask"),
-            std::move(run.warnings)};
+    const std::vector<MaskSource> masks = masksOfFolder(path, read);
+    if (masks.empty()) return readImage(path, read);
+    const auto readMask = [](const MaskSource& mask) { return readImage(mask.file, mask.read); };
+    MaskMap map = joinMasks(masks, {}, readMask, baseName(path));
+    return {std::move(map.volume), map.format + ", " + counted(std::ssize(masks), "mask"),
+            std::move(map.warnings)};
 }
 
 void openImage(const std::string& path, const ReadOptions& options, bool isLabels) {

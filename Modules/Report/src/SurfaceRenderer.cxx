@@ -265,8 +265,10 @@ private:
 
     /// Adds the color of a triangle, times its share of a pixel.
     void addColor(const Share& share, int x, int y, Color& sum) const {
-        const Part& part =
-            *std::prev(std::ranges::upper_bound(parts_, share.owner, {}, &Part::first));
+        const auto after = std::upper_bound(
+            parts_.begin(), parts_.end(), share.owner,
+            [](std::uint32_t owner, const Part& part) { return owner < part.first; });
+        const Part& part = *std::prev(after);
         const SceneSurface& surface = *part.surface;
         const Triangle& t = surface.mesh.lps().triangles[share.owner - part.first];
         const ViewedFace face = viewed(*part.points, t);
