@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "Common/ImageOptions.h"
 #include "Common/Naming.h"
@@ -83,7 +84,7 @@ MaskMap joinMasks(LabelsRun& run) {
     };
     MaskMap map = adaptiso::joinMasks(options.masks, options.priority.priority, read,
                                       options.joinsMasks ? "" : baseName(options.input));
-    run.joined = map.joined;
+    run.joined = std::move(map.joined);
     run.warnings.insert(run.warnings.end(), map.warnings.begin(), map.warnings.end());
     return map;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "adaptiso/LabelPipeline/Masks.h"
 
@@ -27,7 +28,7 @@ struct PriorityOption {
 /// of --priority can't be read, or names what is no mask
 void findMasks(LabelsOptions& options, LabelsRun& run);
 
-/// Joins options.masks, and keeps in run.joined what became of each.
+/// Joins options.masks. Their fates go to run.joined, and warnings to run.warnings.
 MaskMap joinMasks(LabelsRun& run);
 
 }  // namespace adaptiso::labels

@@ -103,8 +103,6 @@ std::vector<Segment> cutByPlane(const SceneMesh& mesh, int axis, double atMm) {
     return segments;
 }
 
-namespace {}  // namespace
-
 SceneMesh::SceneMesh(std::shared_ptr<const TriangleMesh> lps)
     : lps_(std::move(lps)), count_(std::ssize(lps_->triangles)) {
     const auto isBroken = [&](const Triangle& t) {

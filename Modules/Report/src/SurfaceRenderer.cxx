@@ -438,7 +438,7 @@ BoundingBox boxOf(const SceneSurface& surface, const BoundingBox& otherwise) {
     return surface.mesh.isEmpty() ? otherwise : boxOf(surface.mesh);
 }
 
-/// What is drawn from a side.
+/// Draws one view.
 using RenderSide = std::function<Rendering(const View&)>;
 
 /// Six sides, below a line of title.

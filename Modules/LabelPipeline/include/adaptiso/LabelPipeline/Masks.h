@@ -80,7 +80,8 @@ std::vector<MaskSource> masksOfFiles(const std::vector<std::filesystem::path>& f
 
 /// The segments of a DICOM segmentation, or of a .seg.nrrd with several layers; empty for one with
 /// a single layer, which is a map.
-/// \throws FileError, InvalidInput  one can't be read; there are none
+/// \throws FileError     a segment can't be read
+/// \throws InvalidInput  the file holds no segment, or those of several segmentations
 std::vector<MaskSource> masksOfSegments(const std::filesystem::path& file, const ReadOptions& read);
 
 /// Gives masks the numbers and colours of a table's rows of their names; masks that it does not

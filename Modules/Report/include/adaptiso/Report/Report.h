@@ -75,7 +75,8 @@ struct ReportSurface {
     /// Closed and around the brain alone: neither it nor what it holds shows a face.
     bool isWithinSkull = false;
     std::optional<ReportColor> color{};  ///< default: surfaceColor() of its number
-    bool areMarks = false;               ///< pointMarks() on or in the last surface that is none
+    /// Made by pointMarks(). Marks are the last surfaces, and are drawn with the one before them.
+    bool areMarks = false;
 };
 
 /// A small octahedron at every point.
