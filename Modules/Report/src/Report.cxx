@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "Scene.h"
+#include "SixSides.h"
 #include "Slices.h"
 #include "SurfaceRenderer.h"
 #include "adaptiso/Core/Parallel.h"

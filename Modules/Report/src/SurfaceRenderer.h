@@ -51,17 +51,6 @@ Rendering render(std::span<const SceneSurface> surfaces, std::span<const VertexN
                  const BoundingBox& box, const View& view, int size,
                  std::optional<bool> drawsEdges = {});
 
-/// Surface number `n` from six sides, with the spots that can be seen on it ringed; its values in
-/// colour, with a colour bar.
-Picture sixSidesPicture(const Scene& scene, std::size_t n);
-
-/// Marks (SceneSurface::areMarks) with the last surface before them, likewise; what lies behind it
-/// is seen through it. None without marks.
-std::optional<Picture> alignmentPicture(const Scene& scene);
-
-/// All surfaces together, each in its colour, likewise.
-Picture regionsPicture(const Scene& scene);
-
 /// The surfaces in one picture, for drawViews().
 Picture viewPicture(std::vector<SceneSurface> surfaces, const std::string& name,
                     const ViewOptions& options);
