@@ -65,7 +65,7 @@ void findMasks(LabelsOptions& options, LabelsRun& run) {
                              " is one image");
         }
     }
-    if (!masks.empty() && !options.names.empty() && !options.joinsSegments) {
+    if (!masks.empty() && !options.names.empty()) {
         const LabelTable table = readLabelTable(options.names);
         addWarnings(run.warnings, table.warnings, baseName(options.names));
         addWarnings(run.warnings, numberByTable(masks, table, baseName(options.names)), "");

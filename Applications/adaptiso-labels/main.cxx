@@ -83,6 +83,10 @@ void checkCombinations(const LabelsOptions& options) {
             "--segments all: takes all of one input, so not with --join, --series or "
             "--volume-index");
     }
+    if (options.joinsSegments && !options.names.empty()) {
+        throw UsageError(
+            "--segments all: segments bring their names and numbers; leave --names out");
+    }
     requireDisjoint(options.merges);
     const std::filesystem::path& output = options.output;
     const std::string extension = output.extension().string();

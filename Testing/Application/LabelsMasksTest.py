@@ -186,6 +186,8 @@ class SegmentsTest(LabelsTest):
         self.labels("seg.dcm", "--segments", "all", "--labels", "left kidney", "--priority",
                     "smallest", "-o", "one", "-q")
         self.assertEqual(self.voxels("one"), {"Left kidney": (2, 90)})
+        self.refused(USAGE, "--segments all: segments bring their names and numbers; leave --names out",
+                     "seg.dcm", "--segments", "all", "--names", "names.tsv")
         self.refused(USAGE, "--segments all: takes all of one input", "seg.dcm", "--segments", "all",
                      "--series", "1", "-o", "x")
 

@@ -304,6 +304,24 @@ class Masks(InFolder):
         walls = adaptiso.labels(self.masks, names=self.folder / "names.tsv", labels=["top", "left"])
         self.assertEqual({label: region.name for label, region in walls.regions.items()}, {5: "top", 9: "left"})
 
+    def test_segments_of_layers_keep_their_numbers(self):
+        layers = np.zeros((2, *boxes().shape), np.uint8)
+        layers[0] = boxes() % 7
+        layers[1, 4:7, 4:8, 4:6] = 1
+        names = ("Segment0_Name:=left\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+                 "Segment1_Name:=right\nSegment1_LabelValue:=2\nSegment1_Layer:=0\n"
+                 "Segment2_Name:=tumour\nSegment2_LabelValue:=1\nSegment2_Layer:=1\n")
+        header = ("NRRD0004\ntype: uchar\ndimension: 4\nspace: left-posterior-superior\n"
+                  f"sizes: {' '.join(map(str, layers.shape))}\n"
+                  "space directions: none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\n"
+                  "encoding: raw\nspace origin: (0,0,0)\n")
+        file = self.folder / "two.seg.nrrd"
+        file.write_bytes((header + names + "\n").encode() + layers.tobytes("F"))
+        walls = adaptiso.labels(file, segments="all")
+        self.compare(walls, file, "--segments", "all")
+        self.assertEqual({label: region.name for label, region in walls.regions.items()},
+                         {1: "left", 2: "right", 3: "tumour"})
+
     def test_what_is_refused(self):
         for message, image, options in (
                 ("priority: is for masks, and left.nii is one image", self.files[0], {"priority": "largest"}),
@@ -312,6 +330,7 @@ class Masks(InFolder):
                 ("priority 'top': stands there twice", self.masks, {"priority": ["top", "top"]}),
                 ("priority, segments: are for a folder", boxes(), {"priority": "largest"}),
                 ("segments 'some': must be one of all", self.masks, {"segments": "some"}),
+                ("segments: they bring their names", self.files[0], {"segments": "all", "names": "names.tsv"}),
                 ("segments: takes those of one file", self.files, {"segments": "all"}),
                 ("names: masks go by their files' names", self.masks, {"names": {1: "a"}}),
                 ("affine: a file has its own", self.masks, {"affine": SHEARED}),

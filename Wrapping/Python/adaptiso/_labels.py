@@ -345,6 +345,8 @@ def _joined(image: Any, names: Any, priority: Any, segments: Any, affine: Any) -
         return None
     if is_list and segments is not None:
         raise Error("segments: takes those of one file, and a list of files was given")
+    if segments is not None and names is not None:
+        raise Error("segments: they bring their names and numbers; leave names out")
     files = [checked_path("image", file) for file in (image if is_list else [image])]
     kind = "files" if is_list else "folder" if segments is None else "segments"
     by, listed_names = _priority(priority)

@@ -257,7 +257,7 @@ py::object joinedMasks(const std::vector<std::string>& paths, const std::string&
     runUnlocked(0, [&] {
         masks = findMasks(paths, kind);
         if (masks.empty()) return;
-        if (!table.empty() && kind != "segments") {  // which have numbers of their own
+        if (!table.empty()) {
             const LabelTable rows = readLabelTable(table);
             warnings = rows.warnings;
             const auto more = numberByTable(masks, rows, std::filesystem::path(table).filename());
