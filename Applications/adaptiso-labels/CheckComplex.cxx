@@ -44,7 +44,7 @@ std::string faultOf(const TriangleMesh& mesh, const TopologyReport& topology,
     const bool isMeasured = topology.triangles == measure.triangles &&
                             topology.vertices == measure.vertices &&
                             std::ssize(topology.components) == measure.components &&
-                            eulerCharacteristic(topology) == measure.eulerCharacteristic;
+                            topology.eulerCharacteristic() == measure.eulerCharacteristic;
     return isMeasured ? "" : "is not as it was measured";
 }
 

@@ -19,15 +19,9 @@ double extentOf(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::int64_t eulerCharacteristic(const TopologyReport& topology) {
-    std::int64_t sum = 0;
-    for (const auto& component : topology.components) sum += component.eulerCharacteristic();
-    return sum;
-}
-
 bool hasSameShape(const TopologyReport& a, const TopologyReport& b) {
     return a.components.size() == b.components.size() &&
-           eulerCharacteristic(a) == eulerCharacteristic(b);
+           a.eulerCharacteristic() == b.eulerCharacteristic();
 }
 
 void requireWithin(double measuredMm, double boundMm, const TriangleMesh& surface,

@@ -27,7 +27,7 @@ TEST(TextLines, EndAsWritersEndThem) {
              {"a b\n\nc\n", "a b\n\nc", "a b\r\n\r\nc\r\n", "a b\r\rc\r", "a b\r\rc",
               "\xEF\xBB\xBF"
               "a b\n\nc"}) {
-            EXPECT_EQ(linesIn(text, ends), expected) << testing::PrintToString(text);
+            EXPECT_EQ(linesIn(text, ends), expected) << ::testing::PrintToString(text);
         }
         EXPECT_EQ(linesIn("", ends), Lines());
         EXPECT_EQ(linesIn("\xEF\xBB\xBF", ends), Lines());

@@ -203,20 +203,16 @@ double farthestBeyond(const TriangleMesh& from, const TriangleMesh& to, double b
     return farthest;
 }
 
-std::int64_t eulerCharacteristic(const TopologyReport& report) {
-    return report.vertices - report.edges + report.triangles;
-}
-
 ::testing::AssertionResult hasTopologyOf(const TriangleMesh& ours, const TriangleMesh& full) {
     const TopologyReport a = checkTopology(ours), b = checkTopology(full);
     if (a.components.size() == b.components.size() &&
-        eulerCharacteristic(a) == eulerCharacteristic(b)) {
+        a.eulerCharacteristic() == b.eulerCharacteristic()) {
         return ::testing::AssertionSuccess();
     }
     return ::testing::AssertionFailure()
            << "topology: " << a.components.size() << " components, Euler characteristic "
-           << eulerCharacteristic(a) << "; mc " << b.components.size() << ", "
-           << eulerCharacteristic(b);
+           << a.eulerCharacteristic() << "; mc " << b.components.size() << ", "
+           << b.eulerCharacteristic();
 }
 
 ::testing::AssertionResult isWithinItsBound(const Extraction& ours, const TriangleMesh& full,

@@ -10,16 +10,11 @@
 #include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso::testing {
-namespace {
-
-constexpr int kBlockSizes[] = {2, 4, 8, 16};
 
 /// The methods that cover the surface with simple boxes of several sizes.
 class BoxMethods : public ::testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(, BoxMethods, ::testing::Values(Method::Boxes, Method::SkeletonClimbing),
                          [](const auto& method) { return std::string(toString(method.param)); });
-
-}  // namespace
 
 TEST(BoxesMethod, MergesAWallAlongAndAcrossBlocksToFewTriangles) {
     for (std::int64_t at = 2; at < 12; ++at) {  // on a block's face, beside it, within a block

@@ -15,7 +15,6 @@
 namespace adaptiso::testing {
 namespace {
 
-constexpr int kBlockSizes[] = {2, 4, 8, 16};
 constexpr Method kDmc = Method::DiscretizedMarchingCubes;
 
 using HalfSteps = std::array<std::int64_t, 3>;  // of the lattice: a midpoint has one odd number

@@ -7,7 +7,6 @@
 #include "adaptiso/Extraction/Extraction.h"
 
 namespace adaptiso::testing {
-namespace {
 
 template <class T>
 class PixelTypes : public ::testing::Test {};
@@ -15,8 +14,6 @@ using AllPixelTypes =
     ::testing::Types<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t,
                      std::int32_t, std::uint64_t, std::int64_t, float, double>;
 TYPED_TEST_SUITE(PixelTypes, AllPixelTypes);
-
-}  // namespace
 
 TYPED_TEST(PixelTypes, GiveTheSameMeshForTheSameValues) {
     const AnalyticVolume bytes =

@@ -13,12 +13,6 @@ std::int64_t below(std::uint64_t& state, std::int64_t limit) {
     return static_cast<std::int64_t>(nextRandom(state) % static_cast<std::uint64_t>(limit));
 }
 
-std::int64_t eulerCharacteristic(const TopologyReport& report) {
-    std::int64_t sum = 0;
-    for (const SurfaceComponent& c : report.components) sum += c.eulerCharacteristic();
-    return sum;
-}
-
 }  // namespace
 
 HardVolume hardVolume(std::uint64_t seed, int maximumSize) {
@@ -99,13 +93,13 @@ Extraction extractFrom(const VolumeView& volume, double isovalue, const MethodCh
     const TopologyReport oursTopology = checkTopology(ours.mesh),
                          fullTopology = checkTopology(full.mesh);
     const bool isSame = oursTopology.components.size() == fullTopology.components.size() &&
-                        eulerCharacteristic(oursTopology) == eulerCharacteristic(fullTopology);
+                        oursTopology.eulerCharacteristic() == fullTopology.eulerCharacteristic();
     if (!isSame && changed == 0) {
         return ::testing::AssertionFailure()
                << name << ": topology differs from mc and no box says why: "
                << oursTopology.components.size() << " components of Euler characteristic "
-               << eulerCharacteristic(oursTopology) << " against " << fullTopology.components.size()
-               << " of " << eulerCharacteristic(fullTopology);
+               << oursTopology.eulerCharacteristic() << " against "
+               << fullTopology.components.size() << " of " << fullTopology.eulerCharacteristic();
     }
     if (ours.statistics.marchingCubesTriangles != full.statistics.marchingCubesTriangles) {
         return ::testing::AssertionFailure()

@@ -23,6 +23,9 @@ HardVolume binaryVolume(
     const Index3& size,
     const std::function<bool(std::int64_t, std::int64_t, std::int64_t)>& isInside);
 
+/// Of the index, as methods are tried with.
+inline constexpr int kBlockSizes[] = {2, 4, 8, 16};
+
 /// A method and how it is asked for.
 struct MethodChoice {
     Method method;

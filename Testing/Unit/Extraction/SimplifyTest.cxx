@@ -56,14 +56,14 @@ std::int64_t genusOf(const TriangleMesh& mesh) {
     return report.components.size() == 1 ? report.components[0].genus().value_or(-1) : -1;
 }
 
-std::set<std::array<double, 3>> placesOf(const TriangleMesh& mesh) {
+std::set<std::array<double, 3>> pointSetOf(const TriangleMesh& mesh) {
     std::set<std::array<double, 3>> places;
     for (const Vec3& p : mesh.points) places.insert({p.x, p.y, p.z});
     return places;
 }
 
 /// The points on open borders.
-std::set<std::array<double, 3>> borderOf(const TriangleMesh& mesh) {
+std::set<std::array<double, 3>> borderPointsOf(const TriangleMesh& mesh) {
     std::map<std::pair<VertexId, VertexId>, int> count;
     for (const Triangle& t : mesh.triangles) {
         for (int c = 0; c < 3; ++c) {
@@ -252,7 +252,7 @@ TEST(Simplify, ThinsOpenBordersWithinTheBound) {
     // a sagitta of 0.2 mm at a radius of 10 mm allows 16 edges to a circle
     EXPECT_LT(report.components[0].boundaryEdges, 56);
     EXPECT_LT(result.mesh.triangles.size(), tube.triangles.size() / 10);
-    const auto before = borderOf(tube), after = borderOf(result.mesh);
+    const auto before = borderPointsOf(tube), after = borderPointsOf(result.mesh);
     EXPECT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
     EXPECT_TRUE(crossingOf(result.mesh).empty());
 }
@@ -264,7 +264,7 @@ TEST(Simplify, ThinsAFlatSquareToAFewTriangles) {
         const Simplified result = simplify(square, within(0.01));
         EXPECT_LE(result.mesh.triangles.size(), 8U) << side;
         expectBoundHolds(square, result);
-        const auto places = placesOf(result.mesh);
+        const auto places = pointSetOf(result.mesh);
         const double end = side;
         for (const auto& corner : {std::array{0., 0., 0.}, std::array{end, 0., 0.},
                                    std::array{0., end, 0.}, std::array{end, end, 0.}}) {
@@ -279,7 +279,7 @@ TEST(Simplify, KeepsBordersToTheBitWhenAskedTo) {
     SimplifyOptions options = within(0.2);
     options.keepBorders = true;
     const Simplified result = simplify(disc, options);
-    EXPECT_EQ(borderOf(result.mesh), borderOf(disc));
+    EXPECT_EQ(borderPointsOf(result.mesh), borderPointsOf(disc));
     EXPECT_LT(result.mesh.triangles.size(), disc.triangles.size() / 4);
 }
 
@@ -623,9 +623,9 @@ TEST(Simplify, GivesAMeshBackThatHasNothingToDrop) {
     TriangleMesh cube = cubeMesh({5, 5, 5}, {6, 7, 8});
     const Simplified result = simplify(cube, downTo(1'000'000));
     EXPECT_EQ(result.mesh.triangles.size(), 12U);
-    EXPECT_EQ(placesOf(result.mesh), placesOf(cube));
+    EXPECT_EQ(pointSetOf(result.mesh), pointSetOf(cube));
     const TriangleMesh torus = torusMesh(120, 60, 30, 10);
-    EXPECT_EQ(placesOf(simplify(torus, downTo(1'000'000)).mesh), placesOf(torus));
+    EXPECT_EQ(pointSetOf(simplify(torus, downTo(1'000'000)).mesh), pointSetOf(torus));
 }
 
 namespace {

@@ -10,7 +10,6 @@
 namespace adaptiso::testing {
 namespace {
 
-constexpr int kBlockSizes[] = {2, 4, 8, 16};
 constexpr Border kBorders[] = {Border::Closed, Border::Open};
 
 Volume filled(const Index3& size, std::uint8_t value) {
@@ -21,10 +20,10 @@ Volume filled(const Index3& size, std::uint8_t value) {
         geometry);
 }
 
+}  // namespace
+
 /// What every method must keep to.
 class SurfaceMethods : public ::testing::TestWithParam<MethodChoice> {};
-
-}  // namespace
 
 TEST_P(SurfaceMethods, KeepsItsPromisesOnRandomVolumes) {
     for (std::uint64_t seed = 0; seed < 500; ++seed) {

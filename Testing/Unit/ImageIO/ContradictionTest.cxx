@@ -15,12 +15,12 @@ namespace {
 namespace fs = std::filesystem;
 
 // 16 x 8 x 4 samples of 16 bits: a slice has 256 bytes, a volume 1024
-constexpr int kColumns = 16, kRows = 8, kSlices = 4;
-constexpr std::size_t kSliceBytes = 2 * kColumns * kRows, kVolumeBytes = kSliceBytes * kSlices;
+constexpr int kSizeX = 16, kSizeY = 8, kSizeZ = 4;
+constexpr std::size_t kSliceBytes = 2 * kSizeX * kSizeY, kVolumeBytes = kSliceBytes * kSizeZ;
 constexpr const char* kBehind = "behind the image that its header describes";
 
 const std::vector<std::int16_t>& samples() {
-    static const auto all = countingSamples<std::int16_t>(kColumns * kRows * kSlices);
+    static const auto all = countingSamples<std::int16_t>(kSizeX * kSizeY * kSizeZ);
     return all;
 }
 std::string data(std::endian order = std::endian::little) {
@@ -29,7 +29,7 @@ std::string data(std::endian order = std::endian::little) {
 
 std::string niftiHeader(const std::function<void(NiftiFile&)>& change = {}) {
     NiftiFile file;
-    file.dim = {3, kColumns, kRows, kSlices, 1, 1, 1, 1};
+    file.dim = {3, kSizeX, kSizeY, kSizeZ, 1, 1, 1, 1};
     file.sformCode = 1;
     file.sform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     if (change) change(file);
@@ -54,7 +54,7 @@ std::string metaHeader(const std::string& fields = "", const std::string& dataFi
 
 std::string mghHeader() {
     std::string h(284, '\0');
-    const std::int32_t numbers[] = {1, kColumns, kRows, kSlices, 1, 4};
+    const std::int32_t numbers[] = {1, kSizeX, kSizeY, kSizeZ, 1, 4};
     for (std::size_t i = 0; i < 6; ++i) put(h, 4 * i, numbers[i], std::endian::big);
     put<std::int16_t>(h, 28, 1, std::endian::big);
     const float geometry[] = {1, 1, 1, -1, 0, 0, 0, 0, -1, 0, 1, 0, 5, 6, 7};
@@ -127,8 +127,8 @@ TEST(MoreThanTheHeaderSays, MoreSlicesAreRefusedInEveryFormat) {
 
 TEST(MoreThanTheHeaderSays, ARowOrColumnTooFewIsRefusedInEveryFormat) {
     const TempFolder folder;
-    constexpr std::size_t kRowBytes = 2 * kColumns * kSlices, kColumnBytes = 2 * kRows * kSlices;
-    const std::string both(2 * (kColumns + kRows + 1) * kSlices, '\7');
+    constexpr std::size_t kRowBytes = 2 * kSizeX * kSizeZ, kColumnBytes = 2 * kSizeY * kSizeZ;
+    const std::string both(2 * (kSizeX + kSizeY + 1) * kSizeZ, '\7');
     for (const Format& format : formats()) {
         const auto refused = [&](const std::string& more, std::string_view fault) {
             expectRefusal(writeFile(folder / format.name, format.file(more)), fault);
@@ -142,7 +142,7 @@ TEST(MoreThanTheHeaderSays, ARowOrColumnTooFewIsRefusedInEveryFormat) {
 
 TEST(MoreThanTheHeaderSays, ABorderOfZerosIsMoreOfTheImageWhereItIsWholeRowsOrColumns) {
     const TempFolder folder;
-    constexpr std::size_t kRowBytes = 2 * kColumns * kSlices, kColumnBytes = 2 * kRows * kSlices;
+    constexpr std::size_t kRowBytes = 2 * kSizeX * kSizeZ, kColumnBytes = 2 * kSizeY * kSizeZ;
     for (const Format& format : formats()) {
         const bool isMgh = std::string_view(format.name).find(".mg") != std::string_view::npos;
         for (const std::size_t bytes : {kRowBytes, kColumnBytes}) {
@@ -171,9 +171,9 @@ TEST(MoreThanTheHeaderSays, NumbersInTextAreHeldAgainstItToo) {
         for (int n = 0; n < count; ++n) more += "7 ";
         return writeFile(folder / "x.nrrd", header + text + more);
     };
-    expectRead(with(kRows * kSlices - 1), "31 words follow");
-    expectRefusal(with(kRows * kSlices), "its data hold 544 numbers, its header describes 512");
-    expectRefusal(with(kColumns * kSlices + 1), "its data hold 577 numbers");
+    expectRead(with(kSizeY * kSizeZ - 1), "31 words follow");
+    expectRefusal(with(kSizeY * kSizeZ), "its data hold 544 numbers, its header describes 512");
+    expectRefusal(with(kSizeX * kSizeZ + 1), "its data hold 577 numbers");
 }
 
 TEST(MoreThanTheHeaderSays, AFewBytesOrPaddingAreReadWithAWarning) {
@@ -282,7 +282,7 @@ TEST(NiftiExtension, ThatReachesBeyondTheVoxelsBeginIsNotReadAsVoxels) {
 TEST(MoreThanTheHeaderSays, AllVolumesOfA4DFileCount) {
     const TempFolder folder;
     const std::string header =
-        niftiHeader([](NiftiFile& f) { f.dim = {4, kColumns, kRows, kSlices, 2, 1, 1, 1}; });
+        niftiHeader([](NiftiFile& f) { f.dim = {4, kSizeX, kSizeY, kSizeZ, 2, 1, 1, 1}; });
     const auto file = folder / "x.nii";
     writeFile(file, header + data() + data());
     for (const std::int64_t index : {0, 1}) {
@@ -406,7 +406,7 @@ struct OtherImage {
 
 std::vector<OtherImage> otherImages() {
     DicomSlice slice;
-    slice.columns = kColumns, slice.rows = kRows * kSlices, slice.pixels = data();
+    slice.columns = kSizeX, slice.rows = kSizeY * kSizeZ, slice.pixels = data();
     return {{"a NIfTI file", niftiHeader() + data()},
             {"an MGH file", mghHeader() + data()},
             {"a NRRD file", kRawNrrd + data()},
@@ -581,7 +581,7 @@ TEST(TextModeTransfer, IsRefusedInEveryFormat) {
     expectTurned("x.nrrd", nrrdHeader("encoding: gzip\n") + gzipped(withWindowsLineEnds(data())));
     // an image's border of zeros is left over, and MGH's footer follows
     const std::string border = data() + std::string(4 * kVolumeBytes, '\0');
-    const auto wide = [](NiftiFile& f) { f.dim = {3, kColumns, kRows, 5 * kSlices, 1, 1, 1, 1}; };
+    const auto wide = [](NiftiFile& f) { f.dim = {3, kSizeX, kSizeY, 5 * kSizeZ, 1, 1, 1, 1}; };
     expectTurned("x.nii", withWindowsLineEnds(niftiHeader(wide) + border));
     expectTurned("x.mgh", withWindowsLineEnds(mghHeader() + data(std::endian::big) +
                                               std::string(20, '\x41')));
@@ -692,7 +692,7 @@ TEST(MghFooter, HidesNoSliceThatTheHeaderLeavesOut) {
     const std::string image = mghHeader() + data(std::endian::big);
     const std::string footer = std::string(20, '\x41') + mghTag(3, "mri_convert");
     for (const auto value : {std::int16_t{0}, std::int16_t{1}, std::int16_t{2}, std::int16_t{20}}) {
-        const std::vector<std::int16_t> slice(kColumns * kRows, value);
+        const std::vector<std::int16_t> slice(kSizeX * kSizeY, value);
         const std::string more = samplesOf(slice, std::endian::big);
         for (const std::size_t bytes : {kSliceBytes, kSliceBytes / 2, kSliceBytes / 4}) {
             const std::string part = more.substr(0, bytes) + footer;
@@ -851,7 +851,7 @@ std::string nifti2(const std::string& lineEnds) {
     h.replace(4, 8, std::string("n+2\0", 4) + lineEnds);
     put<std::int16_t>(h, 12, 4);
     put<std::int16_t>(h, 14, 16);
-    const std::int64_t dim[] = {3, kColumns, kRows, kSlices, 1, 1, 1, 1};
+    const std::int64_t dim[] = {3, kSizeX, kSizeY, kSizeZ, 1, 1, 1, 1};
     for (std::size_t i = 0; i < 8; ++i) put(h, 16 + 8 * i, dim[i]);
     put<std::int64_t>(h, 168, 544);
     put<std::int32_t>(h, 348, 1);

@@ -9,7 +9,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kSamples = samplesOf(countingSamples<std::int16_t>(24));
 const std::string kMeta =
     "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
     "TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\nElementSpacing = 1 1 1\n"
@@ -19,7 +18,7 @@ const std::string kNrrd =
     "space directions: (1,0,0) (0,1,0) (0,0,1)\nendian: little\nencoding: raw\n"
     "data file: x.raw\n";
 
-std::string niftiHeader() {
+std::string pairedNiftiHeader() {
     NiftiFile file;
     file.sformCode = 1;
     file.sform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -35,11 +34,12 @@ struct Pair {
 };
 
 std::vector<Pair> pairs() {
-    return {
-        {"x.mhd", kMeta, "x.raw"}, {"x.nhdr", kNrrd, "x.raw"}, {"x.hdr", niftiHeader(), "x.img"}};
+    return {{"x.mhd", kMeta, "x.raw"},
+            {"x.nhdr", kNrrd, "x.raw"},
+            {"x.hdr", pairedNiftiHeader(), "x.img"}};
 }
 
-void expectRead(const fs::path& header) {
+void expectSamples(const fs::path& header) {
     EXPECT_EQ(samplesIn<std::int16_t>(readVolume(header).volume), countingSamples<std::int16_t>(24))
         << header;
 }
@@ -50,7 +50,7 @@ TEST(DataFile, MayBeALinkWithinTheFolder) {
         fs::create_directory(folder / "sub");
         writeFile(folder / "sub/real", kSamples);
         fs::create_symlink("sub/real", folder / pair.dataName);
-        expectRead(writeFile(folder / pair.headerName, pair.header));
+        expectSamples(writeFile(folder / pair.headerName, pair.header));
     }
 }
 
@@ -89,12 +89,12 @@ TEST(DataFile, IsFoundThroughALinkedFolderAndBothFilesLinked) {
         writeFile(folder / "store/subject" / std::string(pair.dataName), kSamples);
         fs::create_directory_symlink("store/subject",
                                      folder / "subject");  // as FreeSurfer's fsaverage
-        expectRead(folder / "subject" / pair.headerName);
+        expectSamples(folder / "subject" / pair.headerName);
         fs::create_directory(folder / "bids");  // each file a link into the store
         for (const std::string name : {pair.headerName, pair.dataName}) {
             fs::create_symlink("../store/subject/" + name, folder / "bids" / name);
         }
-        expectRead(folder / "bids" / pair.headerName);
+        expectSamples(folder / "bids" / pair.headerName);
     }
 }
 
@@ -110,7 +110,7 @@ TEST(DataFile, IsFoundInAnAnnexAboveTheHeader) {
         const fs::path anat = folder / "sub-01/anat";
         fs::create_symlink("../../.git/annex/objects/Aa/K1/K1", anat / pair.headerName);
         fs::create_symlink("../../.git/annex/objects/Bb/K2/K2", anat / pair.dataName);
-        expectRead(anat / pair.headerName);
+        expectSamples(anat / pair.headerName);
         // another repository's annex is none of this header's
         const TempFolder other;
         fs::create_directories(other / ".git/annex/objects");

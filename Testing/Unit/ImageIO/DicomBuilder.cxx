@@ -164,7 +164,6 @@ std::vector<std::uint16_t> sampleSlice(const Field& field, int columns, int rows
 
 DicomBuilder fieldSlice(const Field& field, const Vec3& position, const Vec3& alongRow,
                         const Vec3& alongColumn) {
-    constexpr int kColumns = 4, kRows = 3;
     DicomBuilder image = dicomImage(kColumns, kRows);
     placeDicom(image, position, alongRow, alongColumn);
     image.pixels(sampleSlice(field, kColumns, kRows, position, alongRow, alongColumn));

@@ -14,27 +14,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kColumns = 4, kRows = 3, kSlices = 5;
+constexpr int kSeriesSlices = 5;
 
-using Change = std::function<void(DicomBuilder&, int slice)>;
-const Change kUnchanged;
+using SliceChange = std::function<void(DicomBuilder&, int slice)>;
+const SliceChange kUnchanged;
 
-void writeSeries(const TempFolder& folder, const Change& change,
+void writeSeries(const TempFolder& folder, const SliceChange& change,
                  const char* syntax = kExplicitLittleEndian) {
-    for (int k = 0; k < kSlices; ++k) {
+    for (int k = 0; k < kSeriesSlices; ++k) {
         DicomBuilder image = fieldSlice(tellTale, {1, 2, 3.0 + 2 * k});
         if (change) change(image, k);
         writeFile(folder / ("s" + std::to_string(k) + ".dcm"), image.file(syntax));
     }
 }
 
-std::string faultOf(const Change& change, const char* syntax = kExplicitLittleEndian) {
+std::string faultOf(const SliceChange& change, const char* syntax = kExplicitLittleEndian) {
     const TempFolder folder;
     writeSeries(folder, change, syntax);
     return refusalOf(folder.path());
 }
 
-void expectFault(std::string_view fault, const Change& change,
+void expectFault(std::string_view fault, const SliceChange& change,
                  const char* syntax = kExplicitLittleEndian) {
     const std::string message = faultOf(change, syntax);
     EXPECT_NE(message.find(fault), std::string::npos) << message << "\nwanted: " << fault;
@@ -42,7 +42,8 @@ void expectFault(std::string_view fault, const Change& change,
 }
 
 /// Reads the series as the field it is; the warnings.
-std::vector<Warning> warningsOf(const Change& change, const char* syntax = kExplicitLittleEndian) {
+std::vector<Warning> warningsOf(const SliceChange& change,
+                                const char* syntax = kExplicitLittleEndian) {
     const TempFolder folder;
     writeSeries(folder, change, syntax);
     const ReadVolume read = readVolume(folder.path());
@@ -274,7 +275,7 @@ TEST(DicomAgreement, ARescaleThatMakesValuesInfiniteIsRefused) {
 // ---- fewer images than headers count
 
 /// The one warning of 5 slices whose header says so.
-std::string countWarning(const Change& change) {
+std::string countWarning(const SliceChange& change) {
     const auto warnings = warningsOf(change);
     EXPECT_LE(warnings.size(), 1U);
     return warnings.empty() ? "" : warnings[0].text;
@@ -313,7 +314,7 @@ TEST(DicomCounts, OfAnAcquisitionMayBeThoseOfSeveral) {
     const TempFolder folder;
     const auto state = [](DicomBuilder& image, int) { image.text(0x00201002, "IS", "10"); };
     writeSeries(folder, state);
-    for (int k = 0; k < kSlices; ++k) {
+    for (int k = 0; k < kSeriesSlices; ++k) {
         DicomBuilder image = fieldSlice(tellTale, {1, 2, 3.0 + 2 * k});
         state(image, k);
         writeFile(folder / ("t" + std::to_string(k)), image.text(0x0020000E, "UI", "1.2.5").file());

@@ -12,7 +12,7 @@
 namespace adaptiso::testing {
 namespace {
 
-constexpr int kColumns = 4, kRows = 3, kFrames = 5;
+constexpr int kFrames = 5;
 
 /// Frame n lies at place order[n].
 constexpr int kOrder[kFrames] = {3, 0, 4, 2, 1};

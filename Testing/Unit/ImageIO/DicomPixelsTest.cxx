@@ -10,7 +10,7 @@
 namespace adaptiso::testing {
 namespace {
 
-constexpr int kColumns = 4, kRows = 3, kPixels = kColumns * kRows;
+constexpr int kPixels = kColumns * kRows;
 
 /// Two slices with the same pixels, changed by `change`; the volume's first slice.
 using Change = std::function<void(DicomBuilder&)>;

@@ -11,7 +11,7 @@
 namespace adaptiso::testing {
 namespace {
 
-constexpr int kColumns = 5, kRows = 3;  // 15 pixels: frames do not begin at whole bytes
+constexpr int kMaskColumns = 5, kMaskRows = 3;  // 15 pixels: frames do not begin at whole bytes
 constexpr double kStepMm = 2.5;
 
 struct Frame {
@@ -35,8 +35,8 @@ DicomBuilder segmentation(const std::vector<Frame>& frames, Bits bits,
         identification.us(0x0062000B, static_cast<std::uint16_t>(segment));
         groups.push_back(
             group.sequence(0x00209113, {plane}).sequence(0x0062000A, {identification}));
-        for (int j = 0; j < kRows; ++j) {
-            for (int i = 0; i < kColumns; ++i, ++bit) {
+        for (int j = 0; j < kMaskRows; ++j) {
+            for (int i = 0; i < kMaskColumns; ++i, ++bit) {
                 const bool is = isInside(segment, i, j, k);
                 if (bits == Bits::Bytes) {
                     pixels += static_cast<char>(is ? 255 : 0);
@@ -57,7 +57,7 @@ DicomBuilder segmentation(const std::vector<Frame>& frames, Bits bits,
             .us(0x00620004, static_cast<std::uint16_t>(number))
             .text(0x00620005, "LO", number == 1 ? "Liver" : "Left kidney");
     }
-    DicomBuilder image = dicomImage(kColumns, kRows);
+    DicomBuilder image = dicomImage(kMaskColumns, kMaskRows);
     const auto depth = static_cast<std::uint16_t>(bits == Bits::Packed ? 1 : 8);
     image.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.66.4")
         .text(0x00080060, "CS", "SEG")
@@ -77,7 +77,7 @@ DicomBuilder segmentation(const std::vector<Frame>& frames, Bits bits,
 void expectSegment(const ReadVolume& read, const std::vector<Frame>& frames, int segment, int first,
                    int last, std::uint8_t inside) {
     const ImageGeometry& geometry = read.volume.view().geometry();
-    ASSERT_EQ(geometry.size, (Index3{kColumns, kRows, last - first + 1}));
+    ASSERT_EQ(geometry.size, (Index3{kMaskColumns, kMaskRows, last - first + 1}));
     expectNear(geometry.originMm, {1, 2, 3 + kStepMm * first}, 1e-9);
     EXPECT_EQ(geometry.indexToPhysical, Mat3::diagonal(0.5, 0.75, kStepMm));
     const auto view = read.volume.view().as<std::uint8_t>();
@@ -85,8 +85,8 @@ void expectSegment(const ReadVolume& read, const std::vector<Frame>& frames, int
         const bool isThere = std::ranges::any_of(frames, [&](const Frame& frame) {
             return frame.place == k && frame.segment == segment;
         });
-        for (int j = 0; j < kRows; ++j) {
-            for (int i = 0; i < kColumns; ++i) {
+        for (int j = 0; j < kMaskRows; ++j) {
+            for (int i = 0; i < kMaskColumns; ++i) {
                 const bool is = isThere && isInside(segment, i, j, k);
                 ASSERT_EQ(view.at(i, j, k - first), is ? inside : 0) << i << ' ' << j << ' ' << k;
             }

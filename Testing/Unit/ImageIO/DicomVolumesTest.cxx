@@ -12,7 +12,7 @@
 namespace adaptiso::testing {
 namespace {
 
-constexpr int kSlices = 3;
+constexpr int kVolumeSlices = 3;
 
 double fieldOfVolume(const Vec3& point, int volume) {
     return tellTale(point) + 100 * volume;
@@ -23,12 +23,12 @@ double fieldOfVolume(const Vec3& point, int volume) {
 using Label = std::function<void(DicomBuilder&, int volume, int slice)>;
 void writeVolumes(const TempFolder& folder, int volumes, const Label& label) {
     for (int v = 0; v < volumes; ++v) {
-        for (int k = 0; k < kSlices; ++k) {
+        for (int k = 0; k < kVolumeSlices; ++k) {
             DicomBuilder image =
                 fieldSlice([v](const Vec3& p) { return fieldOfVolume(p, v); }, {1, 2, 3.0 + 2 * k});
-            image.text(0x00200013, "IS", std::to_string((v * kSlices + k) * 5 % 7));
+            image.text(0x00200013, "IS", std::to_string((v * kVolumeSlices + k) * 5 % 7));
             label(image, v, k);
-            writeFile(folder / std::to_string((v * kSlices + k) * 7 % 37), image.file());
+            writeFile(folder / std::to_string((v * kVolumeSlices + k) * 7 % 37), image.file());
         }
     }
 }
@@ -42,7 +42,7 @@ void expectVolumes(const TempFolder& folder, int volumes, std::string_view kind)
         << message;
     for (int v = 0; v < volumes; ++v) {
         const ReadVolume read = readVolume(folder.path(), {.volumeIndex = v});
-        EXPECT_EQ(read.volume.view().geometry().size[2], kSlices);
+        EXPECT_EQ(read.volume.view().geometry().size[2], kVolumeSlices);
         expectField(read.volume, [v](const Vec3& p) { return fieldOfVolume(p, v); });
     }
     for (const int none : {volumes, -1}) {
@@ -96,7 +96,7 @@ TEST(DicomVolumes, AreToldApartByInstanceNumbersWhenNothingElseDoes) {
     for (const bool isInterleaved : {false, true}) {
         const TempFolder folder;
         writeVolumes(folder, 3, [&](DicomBuilder& image, int v, int k) {
-            const int number = isInterleaved ? 3 * k + v : kSlices * v + k;
+            const int number = isInterleaved ? 3 * k + v : kVolumeSlices * v + k;
             image.text(0x00200013, "IS", std::to_string(number + 1));
         });
         expectVolumes(folder, 3, "volumes");
@@ -129,7 +129,7 @@ TEST(DicomVolumes, ImageTypesMayDifferWithinOneVolume) {
     writeVolumes(folder, 1, [](DicomBuilder& image, int, int k) {
         image.text(0x00080008, "CS", k ? "ORIGINAL\\PRIMARY\\AXIAL" : "ORIGINAL\\PRIMARY\\OTHER");
     });
-    EXPECT_EQ(readVolume(folder.path()).volume.view().geometry().size[2], kSlices);
+    EXPECT_EQ(readVolume(folder.path()).volume.view().geometry().size[2], kVolumeSlices);
 }
 
 // ---- passes over the same places in one series, with numbers and times as scanners leave them
@@ -470,7 +470,7 @@ TEST(ListSeries, CountsVolumes) {
     const DicomListing listing = listSeries(folder.path());
     ASSERT_EQ(listing.series.size(), 1U);
     EXPECT_EQ(listing.series[0].volumes, 3);
-    EXPECT_EQ(listing.series[0].slices, kSlices);
+    EXPECT_EQ(listing.series[0].slices, kVolumeSlices);
     EXPECT_TRUE(listing.series[0].isReadable());
 }
 

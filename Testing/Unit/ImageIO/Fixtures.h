@@ -70,6 +70,9 @@ std::vector<T> countingSamples(std::int64_t count) {
     return samples;
 }
 
+/// What most files hold: 4 x 3 x 2 of them.
+inline const std::string kSamples = samplesOf(countingSamples<std::int16_t>(24));
+
 template <class T>
 std::vector<T> samplesIn(const VolumeView& volume) {
     const TypedVolumeView<T> view = volume.as<T>();

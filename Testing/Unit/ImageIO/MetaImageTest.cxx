@@ -6,8 +6,6 @@
 namespace adaptiso::testing {
 namespace {
 
-const std::string kSamples = samplesOf(countingSamples<std::int16_t>(24));
-
 struct MetaFile {
     std::string dimensions = "3", sizes = "4 3 2";
     std::string matrix = "TransformMatrix = 0 1 0 -1 0 0 0 0 1\n";

@@ -6,8 +6,6 @@
 namespace adaptiso::testing {
 namespace {
 
-const std::string kSamples = samplesOf(countingSamples<std::int16_t>(24));
-
 struct NrrdFile {
     std::string type = "short", dimension = "3", sizes = "4 3 2";
     std::string space = "space: left-posterior-superior\n";

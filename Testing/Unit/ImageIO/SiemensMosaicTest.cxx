@@ -7,7 +7,7 @@
 namespace adaptiso::testing {
 namespace {
 
-constexpr int kSlices = 7, kTiles = 3, kColumns = 4, kRows = 3;
+constexpr int kMosaicSlices = 7, kTiles = 3;
 constexpr double kSliceStepMm = 2.5;
 
 struct CsaItem {
@@ -40,7 +40,7 @@ std::string csaHeader(const std::vector<CsaItem>& items, int version) {
 std::string csaOf(const Vec3& normal, int version = 2) {
     return csaHeader(
         {{"EchoLinePosition", {"32"}},
-         {"NumberOfImagesInMosaic", {std::to_string(kSlices)}},
+         {"NumberOfImagesInMosaic", {std::to_string(kMosaicSlices)}},
          {"Empty", {}},
          {"SliceNormalVector",
           {std::to_string(normal.x), std::to_string(normal.y), std::to_string(normal.z)}}},
@@ -50,7 +50,7 @@ std::string csaOf(const Vec3& normal, int version = 2) {
 /// Seven slices as tiles of a 3 x 3 mosaic, the first one's first voxel at (1, 2, 3).
 DicomBuilder mosaic(const Field& field, const Vec3& normal, const std::string& csa) {
     std::vector<std::uint16_t> samples(kTiles * kTiles * kColumns * kRows, 0);
-    for (int k = 0; k < kSlices; ++k) {
+    for (int k = 0; k < kMosaicSlices; ++k) {
         const auto tile =
             sampleSlice(field, kColumns, kRows, Vec3{1, 2, 3} + k * kSliceStepMm * normal);
         for (int j = 0; j < kRows; ++j) {
@@ -80,7 +80,7 @@ TEST(SiemensMosaic, IsCutIntoItsSlices) {
         const ReadVolume read =
             readVolume(writeFile(folder / "x", mosaic(tellTale, up, csaOf(up, version)).file()));
         const ImageGeometry& g = read.volume.view().geometry();
-        EXPECT_EQ(g.size, (Index3{kColumns, kRows, kSlices}));
+        EXPECT_EQ(g.size, (Index3{kColumns, kRows, kMosaicSlices}));
         expectNear(g.originMm, {1, 2, 3}, 1e-12);
         expectField(read.volume, tellTale);
         EXPECT_TRUE(read.warnings.empty());

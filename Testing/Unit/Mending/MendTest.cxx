@@ -324,7 +324,8 @@ TriangleMesh plateMesh(std::int64_t corners, const Vec3& middle, double radius, 
     TriangleMesh plate;
     for (const double z : {0.0, height}) {
         for (std::int64_t n = 0; n < corners; ++n) {
-            const double angle = 2 * std::numbers::pi * (n + 0.3) / corners;
+            const double angle = 2 * std::numbers::pi * (static_cast<double>(n) + 0.3) /
+                                 static_cast<double>(corners);
             plate.points.push_back(middle +
                                    Vec3{radius * std::cos(angle), radius * std::sin(angle), z});
         }

@@ -115,7 +115,7 @@ TEST(CapFiles, OfPlacesKeepTheirNumbers) {
                  {{"<left>", {-80, 1, 2}}, {"Cz", {0, 0, 95.5}}});
 }
 
-std::string refused(const char* extension, const std::string& text) {
+std::string capRefusal(const char* extension, const std::string& text) {
     try {
         decodePoints(text, extension, "a");
     } catch (const FileError& error) {
@@ -126,20 +126,23 @@ std::string refused(const char* extension, const std::string& text) {
 }
 
 TEST(CapFiles, AreRefusedByLine) {
-    EXPECT_EQ(refused(".loc", "1 90 .25\n"),
+    EXPECT_EQ(capRefusal(".loc", "1 90 .25\n"),
               "a: line 1: a row has 3 words, must have 4; give each row the words of this format");
-    EXPECT_NE(refused(".loc", "1 left .25 C3\n").find("line 1: the coordinate t of 'C3' is 'left'"),
-              std::string::npos);
-    EXPECT_NE(refused(".elp", "Fz 46\n").find("a row has 2 words"), std::string::npos);
-    EXPECT_NE(refused(".hpts", "coil 1 2 3 4\n").find("of the kind 'coil'"), std::string::npos);
-    EXPECT_NE(refused(".hpts", "cardinal 4 2 3 4\n").find("the name ''"), std::string::npos);
-    EXPECT_NE(refused(".bvef", "<Electrodes><Electrode><Name>Cz</Name></Electrode></Electrodes>")
+    EXPECT_NE(
+        capRefusal(".loc", "1 left .25 C3\n").find("line 1: the coordinate t of 'C3' is 'left'"),
+        std::string::npos);
+    EXPECT_NE(capRefusal(".elp", "Fz 46\n").find("a row has 2 words"), std::string::npos);
+    EXPECT_NE(capRefusal(".hpts", "coil 1 2 3 4\n").find("of the kind 'coil'"), std::string::npos);
+    EXPECT_NE(capRefusal(".hpts", "cardinal 4 2 3 4\n").find("the name ''"), std::string::npos);
+    EXPECT_NE(capRefusal(".bvef", "<Electrodes><Electrode><Name>Cz</Name></Electrode></Electrodes>")
                   .find("none of its 1 points has a place"),
               std::string::npos);
-    EXPECT_NE(refused(".bvef", "Cz 1 2 3").find("XML"), std::string::npos);
-    EXPECT_NE(refused(".pos", "2\nCz 1 2\n").find("a point has 2 coordinates"), std::string::npos);
-    EXPECT_NE(refused(".abc", "Cz 1 2 3\n").find("give .tsv, .csv, .ced, .elc, .sfp, .fif, .loc"),
+    EXPECT_NE(capRefusal(".bvef", "Cz 1 2 3").find("XML"), std::string::npos);
+    EXPECT_NE(capRefusal(".pos", "2\nCz 1 2\n").find("a point has 2 coordinates"),
               std::string::npos);
+    EXPECT_NE(
+        capRefusal(".abc", "Cz 1 2 3\n").find("give .tsv, .csv, .ced, .elc, .sfp, .fif, .loc"),
+        std::string::npos);
 }
 
 /// The bytes of a tag's struct, big-endian.

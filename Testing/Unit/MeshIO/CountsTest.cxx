@@ -17,6 +17,7 @@ using testing::decoded;
 using testing::exampleName;
 using testing::icosphere;
 using testing::messageOf;
+using testing::replaced;
 using testing::written;
 
 constexpr std::size_t kTriangles = 320;  // of the ball
@@ -32,13 +33,6 @@ std::vector<std::string> codesOf(const MeshFile& file) {
 }
 
 using Codes = std::vector<std::string>;
-
-/// `bytes` with another number in place of a text. \pre it is there once
-std::string replaced(std::string bytes, const std::string& text, const std::string& other) {
-    const std::size_t at = bytes.find(text);
-    EXPECT_NE(at, std::string::npos) << text;
-    return bytes.replace(at, text.size(), other);
-}
 
 std::string fault(const std::string& bytes, const std::string& name) {
     return messageOf<FileError>([&] { decoded(bytes, name); });

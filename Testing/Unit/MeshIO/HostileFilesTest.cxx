@@ -32,6 +32,8 @@ using testing::decoded;
 using testing::exampleName;
 using testing::icosphere;
 using testing::messageOf;
+using testing::nameOfFormat;
+using testing::replaced;
 using testing::tetrahedron;
 using testing::written;
 
@@ -135,18 +137,8 @@ TEST_P(HostileFile, OfRandomBytesIsAnError) {
     EXPECT_FALSE(decodesSafely(std::string(300, '\xFF'), name()));
 }
 
-std::string nameOfFormat(const ::testing::TestParamInfo<int>& info) {
-    return std::string(meshFormats()[info.param].extensions.front().substr(1));
-}
-
 INSTANTIATE_TEST_SUITE_P(EveryFormat, HostileFile,
                          ::testing::Range(0, static_cast<int>(meshFormats().size())), nameOfFormat);
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
 
 TEST(HostileCounts, AllocateNothingOfTheirSize) {
     const std::string xml = written(tetrahedron(), "a.vtp"),

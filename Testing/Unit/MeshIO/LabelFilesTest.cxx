@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class LabelFiles : public testing::Test {
+class LabelFiles : public ::testing::Test {
 protected:
     LabelFiles() { fs::create_directories(folder_); }
     ~LabelFiles() override { fs::remove_all(folder_); }
@@ -25,9 +25,9 @@ protected:
         return {std::istreambuf_iterator<char>(file), {}};
     }
 
-    fs::path folder_ = fs::path(testing::TempDir()) /
+    fs::path folder_ = fs::path(::testing::TempDir()) /
                        (std::string("LabelFiles-") +
-                        testing::UnitTest::GetInstance()->current_test_info()->name());
+                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
     TriangleMesh mesh_{{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}},
                        {},
                        {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};

@@ -49,6 +49,18 @@ inline std::string exampleName(const MeshFormat& format) {
     return "surface" + std::string(format.extensions.front());
 }
 
+/// The same for the names of tests of TEST_P: its extension.
+inline std::string nameOfFormat(const ::testing::TestParamInfo<int>& info) {
+    return std::string(meshFormats()[info.param].extensions.front().substr(1));
+}
+
+/// `text` with other words at the first place of some. \pre these are there
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
 /// Four points, none on a plane of coordinates with another; outward.
 inline TriangleMesh tetrahedron() {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}},

@@ -15,6 +15,7 @@ namespace {
 using testing::exampleName;
 using testing::icosphere;
 using testing::messageOf;
+using testing::nameOfFormat;
 using testing::temporaryFile;
 using testing::tetrahedron;
 using testing::written;
@@ -76,10 +77,6 @@ TEST_P(RecognizedFormat, IsReadFromGzip) {
     const std::string packed = gzipped(bytes());
     EXPECT_NE(refusalOf("cut.gz", packed.substr(0, packed.size() / 2)).find("break off"),
               std::string::npos);
-}
-
-std::string nameOfFormat(const ::testing::TestParamInfo<int>& info) {
-    return std::string(meshFormats()[info.param].extensions.front().substr(1));
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryFormat, RecognizedFormat,

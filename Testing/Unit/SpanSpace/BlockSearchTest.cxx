@@ -8,7 +8,6 @@
 // The ways to search an index: the same answer, and what each of them looks at for it.
 
 namespace adaptiso::testing {
-namespace {
 
 template <class T>
 class BlockSearch : public ::testing::Test {};
@@ -16,6 +15,8 @@ using PixelTypes =
     ::testing::Types<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t,
                      std::int32_t, std::uint64_t, std::int64_t, float, double>;
 TYPED_TEST_SUITE(BlockSearch, PixelTypes);
+
+namespace {
 
 /// Below, at, between and above the samples of hardSamples(), and beyond what a type holds.
 std::vector<double> hardIsovalues() {

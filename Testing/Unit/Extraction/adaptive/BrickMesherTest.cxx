@@ -17,10 +17,10 @@ using detail::Bricks;
 using detail::FineSurface;
 
 /// A triangle by its corners, in ten millionths of a voxel, the least one first.
-using Key = std::array<std::array<std::int64_t, 3>, 3>;
+using PlacesOfTriangle = std::array<std::array<std::int64_t, 3>, 3>;
 
-Key keyOf(const Vec3& a, const Vec3& b, const Vec3& c) {
-    Key key;
+PlacesOfTriangle placesOf(const Vec3& a, const Vec3& b, const Vec3& c) {
+    PlacesOfTriangle key;
     for (int i = 0; i < 3; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
             key[i][axis] = std::llround(1e7 * (i == 0 ? a : i == 1 ? b : c)[axis]);
@@ -30,9 +30,9 @@ Key keyOf(const Vec3& a, const Vec3& b, const Vec3& c) {
     return key;
 }
 
-Key keyOf(const FineSurface& fine, std::size_t t) {
+PlacesOfTriangle placesOf(const FineSurface& fine, std::size_t t) {
     const auto& [a, b, c] = fine.triangles[t];
-    return keyOf(fine.vertices[a].index, fine.vertices[b].index, fine.vertices[c].index);
+    return placesOf(fine.vertices[a].index, fine.vertices[b].index, fine.vertices[c].index);
 }
 
 }  // namespace
@@ -46,9 +46,9 @@ TEST(BrickMesher, MakesTheSurfaceOfMarchingCubes) {
         const int blockSize = 2 << seed % 3;
         const Extraction mc =
             extractFrom(hard.volume, hard.isovalue, Method::MarchingCubes, blockSize, border);
-        std::vector<Key> expected, keys;
+        std::vector<PlacesOfTriangle> expected, keys;
         for (const auto& [a, b, c] : mc.mesh.triangles) {
-            expected.push_back(keyOf(mc.mesh.points[a], mc.mesh.points[b], mc.mesh.points[c]));
+            expected.push_back(placesOf(mc.mesh.points[a], mc.mesh.points[b], mc.mesh.points[c]));
         }
         const auto index = SpanSpaceIndex::build(hard.volume.view(), {blockSize, border});
         const auto sampler =
@@ -58,7 +58,8 @@ TEST(BrickMesher, MakesTheSurfaceOfMarchingCubes) {
         FineSurface fine;
         for (std::int64_t b = 0; b < bricks.count(); ++b) {
             mesher.mesh(bricks[b], fine);
-            for (std::size_t t = 0; t < fine.triangles.size(); ++t) keys.push_back(keyOf(fine, t));
+            for (std::size_t t = 0; t < fine.triangles.size(); ++t)
+                keys.push_back(placesOf(fine, t));
         }
         std::sort(expected.begin(), expected.end());
         std::sort(keys.begin(), keys.end());

@@ -11,8 +11,6 @@ using detail::Refusal;
 using detail::SampleAssignment;
 using detail::SheetClearance;
 
-constexpr double kRounding = 1e-5;  // samples are kept in single precision
-
 }  // namespace
 
 TEST(ErrorTracker, MeasuresHowFarTheSamplesAre) {
@@ -21,8 +19,8 @@ TEST(ErrorTracker, MeasuresHowFarTheSamplesAre) {
     square.addSample(-0.4);
     const auto fit = ErrorTracker(square.patch, unitFrame()).measure(square.changed);
     ASSERT_TRUE(fit);
-    EXPECT_NEAR(fit->sumOfSquares, 0.09 + 0.16, kRounding);
-    EXPECT_NEAR(fit->largestSquare, 0.16, kRounding);
+    EXPECT_NEAR(fit->sumOfSquares, 0.09 + 0.16, kSampleRounding);
+    EXPECT_NEAR(fit->largestSquare, 0.16, kSampleRounding);
 }
 
 TEST(ErrorTracker, RefusesAVertexBeyondTheDistance) {
@@ -41,7 +39,7 @@ TEST(ErrorTracker, RefusesASampleLeftBeyondTheDistance) {
     SampleAssignment result;
     EXPECT_EQ(errors.assign(square.changed, 0.59, result), Refusal::SampleFar);
     EXPECT_EQ(errors.assign(square.changed, 0.61, result), Refusal::None);
-    EXPECT_NEAR(result.largestSquare, 0.36, kRounding);
+    EXPECT_NEAR(result.largestSquare, 0.36, kSampleRounding);
 }
 
 TEST(ErrorTracker, AllowsASmallerDistanceInAWeb) {

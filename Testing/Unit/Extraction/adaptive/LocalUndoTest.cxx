@@ -23,7 +23,7 @@ namespace adaptiso::testing {
 namespace {
 
 using detail::SurfaceState;
-using Triangle = SurfaceState::Triangle;
+using StateTriangle = SurfaceState::Triangle;
 
 constexpr double kRadius = 10;
 
@@ -55,7 +55,7 @@ struct CoarseSphere {
 };
 
 /// From its smallest corner.
-Triangle turned(Triangle t) {
+StateTriangle turned(StateTriangle t) {
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     return t;
 }
@@ -172,13 +172,13 @@ TEST(LocalUndo, GoesFartherAroundPiecesThatStayInsideOut) {
 TEST(LocalUndo, StandsOnHeirsThatMakeTheSurface) {
     const CoarseSphere sphere;
     ASSERT_LT(sphere.surface.triangles.size(), sphere.start.triangles.size() / 4);
-    std::set<Triangle> merged, made;
-    for (const Triangle& t : sphere.start.triangles) {
+    std::set<StateTriangle> merged, made;
+    for (const StateTriangle& t : sphere.start.triangles) {
         const auto& heirs = sphere.surface.heirs;
-        const Triangle now{heirs[t[0]], heirs[t[1]], heirs[t[2]]};
+        const StateTriangle now{heirs[t[0]], heirs[t[1]], heirs[t[2]]};
         if (now[0] != now[1] && now[1] != now[2] && now[2] != now[0]) merged.insert(turned(now));
     }
-    for (const Triangle& t : sphere.surface.triangles) made.insert(turned(t));
+    for (const StateTriangle& t : sphere.surface.triangles) made.insert(turned(t));
     EXPECT_EQ(merged, made);
 }
 

@@ -14,24 +14,24 @@ using detail::Patch;
 using detail::PatchTopology;
 using detail::Star;
 
-constexpr std::uint32_t kSide = 5;
+constexpr std::uint32_t kSquareSide = 5;
 
 std::uint32_t at(std::uint32_t x, std::uint32_t y) {
-    return x + kSide * y;
+    return x + kSquareSide * y;
 }
 
 /// A square of 4 x 4 squares, each cut along the diagonal, open all around.
 Patch square() {
     Patch patch;
-    for (std::uint32_t y = 0; y < kSide; ++y) {
-        for (std::uint32_t x = 0; x < kSide; ++x) {
+    for (std::uint32_t y = 0; y < kSquareSide; ++y) {
+        for (std::uint32_t x = 0; x < kSquareSide; ++x) {
             patch.points.push_back({static_cast<double>(x), static_cast<double>(y), 0});
-            const bool isBorder = x == 0 || y == 0 || x + 1 == kSide || y + 1 == kSide;
+            const bool isBorder = x == 0 || y == 0 || x + 1 == kSquareSide || y + 1 == kSquareSide;
             patch.marks.push_back(isBorder ? Patch::kBorder : Patch::kPlain);
         }
     }
-    for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
-        for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
+    for (std::uint32_t y = 0; y + 1 < kSquareSide; ++y) {
+        for (std::uint32_t x = 0; x + 1 < kSquareSide; ++x) {
             patch.triangles.push_back({at(x, y), at(x + 1, y), at(x + 1, y + 1)});
             patch.triangles.push_back({at(x, y), at(x + 1, y + 1), at(x, y + 1)});
         }
@@ -76,7 +76,7 @@ void expectChain(const Patch& patch, const Star& star) {
     }
 }
 
-constexpr std::size_t kBorderEdges = std::size_t{4} * (kSide - 1);
+constexpr std::size_t kBorderEdges = std::size_t{4} * (kSquareSide - 1);
 
 }  // namespace
 

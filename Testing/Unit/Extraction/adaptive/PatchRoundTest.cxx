@@ -15,10 +15,11 @@ using detail::PatchWork;
 using detail::SimplifiedSurface;
 
 constexpr detail::PatchCut kCut{16, {12, 12, 12}};
-constexpr double kDistanceMm = 0.2, kRounding = 1e-5;  // samples are kept in single precision
 
 /// A ball's full surface in a voxel of 1 mm.
-struct Ball {
+struct RoundBall {
+    static constexpr double kDistanceMm = 0.2;
+
     Scene scene = ballScene();
     SimplifiedSurface surface = scene.fullSurface();
 
@@ -47,8 +48,8 @@ struct Ball {
 }  // namespace
 
 TEST(PatchRound, LeavesASoundSurfaceNearItsSamples) {
-    Ball ball;
-    ball.run({Ball::limits()});
+    RoundBall ball;
+    ball.run({RoundBall::limits()});
     EXPECT_LT(ball.surface.triangleCount(), ball.surface.fineTriangles / 2);
     expectSound(meshOf(ball.surface));
     ASSERT_EQ(ball.surface.states.size(), ball.surface.points.size());
@@ -56,18 +57,18 @@ TEST(PatchRound, LeavesASoundSurfaceNearItsSamples) {
     EXPECT_EQ(meshOf(ball.surface).points.size(), ball.surface.points.size());  // none unused
     for (std::size_t s = 0; s < ball.surface.samples.size(); ++s) {
         ASSERT_LT(ball.surface.sampleTriangle[s], ball.surface.triangles.size());
-        EXPECT_LE(std::sqrt(ball.squaredDistance(s)), kDistanceMm + kRounding);
+        EXPECT_LE(std::sqrt(ball.squaredDistance(s)), RoundBall::kDistanceMm + kSampleRounding);
     }
 }
 
 TEST(PatchRound, KeepsWhatStraddlesTheCut) {
-    Ball ball;
-    using Key = std::array<double, 9>;
+    RoundBall ball;
+    using TrianglePlaces = std::array<double, 9>;
     const auto keys = [](const SimplifiedSurface& surface, bool onlyStraddling) {
-        std::set<Key> all;
+        std::set<TrianglePlaces> all;
         for (const auto& t : surface.triangles) {
             std::set<std::array<double, 3>> cubes;
-            Key key;
+            TrianglePlaces key;
             for (int c = 0; c < 3; ++c) {
                 const Vec3& p = surface.points[t[c]];
                 cubes.insert({std::floor((p.x - 12) / 16), std::floor((p.y - 12) / 16),
@@ -78,17 +79,17 @@ TEST(PatchRound, KeepsWhatStraddlesTheCut) {
         }
         return all;
     };
-    const std::set<Key> straddling = keys(ball.surface, true);
-    ball.run({Ball::limits()});
-    const std::set<Key> after = keys(ball.surface, false);
+    const std::set<TrianglePlaces> straddling = keys(ball.surface, true);
+    ball.run({RoundBall::limits()});
+    const std::set<TrianglePlaces> after = keys(ball.surface, false);
     EXPECT_GT(straddling.size(), 100U);
     EXPECT_TRUE(std::includes(after.begin(), after.end(), straddling.begin(), straddling.end()));
 }
 
 TEST(PatchRound, MakesNoMoreCollapsesThanAsked) {
     for (const std::int64_t most : {0, 1, 100}) {
-        Ball ball;
-        PatchWork work{Ball::limits()};
+        RoundBall ball;
+        PatchWork work{RoundBall::limits()};
         work.mostCollapses = most;
         ball.run(work);
         // two triangles each; the patches are large enough for their shares
@@ -100,14 +101,14 @@ TEST(PatchRound, LendsAPatchOfAllTheSamplesAndGetsThemBack) {
     // the second cut has the ball in one cube, and a vertex without triangles in another: so its
     // samples are copied
     const detail::PatchCut cut{256, {-100, -100, -100}};
-    Ball lent, copied;
+    RoundBall lent, copied;
     copied.surface.points.push_back(copied.scene.frame.fromIndex({1000, 0, 0}));
     copied.surface.states.push_back(detail::Patch::State::Final);
     copied.surface.quadrics.emplace_back();
     ASSERT_TRUE(detail::PatchGroups(lent.surface, cut, lent.scene.frame).isOne());
     ASSERT_FALSE(detail::PatchGroups(copied.surface, cut, copied.scene.frame).isOne());
     const std::vector<detail::Sample> before = lent.surface.samples;
-    PatchWork work{Ball::limits()};
+    PatchWork work{RoundBall::limits()};
     work.fits = true;
     lent.run(work, cut);
     copied.run(work, cut);
@@ -121,11 +122,11 @@ TEST(PatchRound, LendsAPatchOfAllTheSamplesAndGetsThemBack) {
 }
 
 TEST(PatchRound, BringsVerticesNearerToTheSamples) {
-    Ball ball;
-    ball.run({Ball::limits()});
+    RoundBall ball;
+    ball.run({RoundBall::limits()});
     const std::int64_t count = ball.surface.triangleCount();
     const double before = ball.sumOfSquares();
-    PatchWork work{Ball::limits()};
+    PatchWork work{RoundBall::limits()};
     work.collapses = false;
     work.fits = true;
     ball.run(work);
@@ -135,10 +136,10 @@ TEST(PatchRound, BringsVerticesNearerToTheSamples) {
 }
 
 TEST(PatchRound, LeavesVerticesThatAreFinal) {
-    Ball ball;
+    RoundBall ball;
     ball.surface.states.assign(ball.surface.points.size(), detail::Patch::State::Final);
     const auto points = ball.surface.points;
-    ball.run({Ball::limits()});
+    ball.run({RoundBall::limits()});
     EXPECT_EQ(ball.surface.points, points);
 }
 

@@ -17,7 +17,6 @@ using detail::PatchLimits;
 using detail::PatchSimplifier;
 
 constexpr std::int64_t kAll = 1 << 20;
-constexpr double kRounding = 1e-5;  // samples are kept in single precision
 
 PatchLimits limits(double distanceMm) {
     PatchLimits limits;
@@ -61,7 +60,7 @@ TEST(PatchSimplifier, KeepsSamplesWithinTheirDistance) {
         Patch patch = spherePatch();
         PatchSimplifier(patch, unitFrame(), limits(distance)).collapseEdges(kAll, nullptr);
         for (std::size_t s = 0; s < patch.samples.size(); ++s) {
-            EXPECT_LE(std::sqrt(squaredDistance(patch, s)), distance + kRounding);
+            EXPECT_LE(std::sqrt(squaredDistance(patch, s)), distance + kSampleRounding);
         }
         const TriangleMesh mesh = meshOf(patch);
         expectSound(mesh);

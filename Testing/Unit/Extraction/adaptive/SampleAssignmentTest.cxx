@@ -18,8 +18,6 @@ using detail::PatchTopology;
 using detail::Refusal;
 using detail::SampleAssignment;
 
-constexpr double kRounding = 1e-5;  // samples are kept in single precision
-
 double squaredDistance(const Patch& patch, std::size_t s, std::uint32_t triangle) {
     const auto& [a, b, c] = patch.triangles[triangle];
     return detail::squaredDistanceToTriangle(patch.samples[s].point(),
@@ -79,10 +77,10 @@ TEST(ErrorTracker, HandsSamplesToNearTriangles) {
             sum += squared;
             largest = std::max(largest, squared);
             ++moved;
-            nearest += squared <= least + kRounding ? 1 : 0;
+            nearest += squared <= least + kSampleRounding ? 1 : 0;
         }
-        ASSERT_NEAR(result.sumOfSquares, sum, kRounding) << n;
-        ASSERT_NEAR(result.largestSquare, largest, kRounding) << n;
+        ASSERT_NEAR(result.sumOfSquares, sum, kSampleRounding) << n;
+        ASSERT_NEAR(result.largestSquare, largest, kSampleRounding) << n;
     }
     EXPECT_GT(moved, 1000);
     EXPECT_GT(nearest, moved * 3 / 4);
@@ -111,7 +109,7 @@ TEST(ErrorTracker, HandsOnTheSamplesOfTrianglesThatGo) {
     EXPECT_LT(meshOf(patch).triangles.size(), 24U);
     expectListed(patch, errors);
     for (std::size_t s = 0; s < patch.samples.size(); ++s) {
-        EXPECT_NEAR(squaredDistance(patch, s, patch.sampleTriangle[s]), 0, kRounding) << s;
+        EXPECT_NEAR(squaredDistance(patch, s, patch.sampleTriangle[s]), 0, kSampleRounding) << s;
     }
 }
 

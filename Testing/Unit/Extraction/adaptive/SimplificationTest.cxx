@@ -17,14 +17,14 @@ using detail::Simplification;
 using detail::SimplifiedSurface;
 using detail::WantedCount;
 
-constexpr double kDistanceMm = 0.2, kRounding = 1e-5;  // samples are kept in single precision
+struct SimplifiedBall {
+    static constexpr double kDistanceMm = 0.2;
 
-struct Ball {
     Scene scene = ballScene();
     detail::VolumeSurface full{scene.volume.view().geometry(), *scene.sampler, scene.bricks};
     detail::PatchLimits limits;
 
-    Ball() { limits.maxDistanceMm = kDistanceMm; }
+    SimplifiedBall() { limits.maxDistanceMm = kDistanceMm; }
     Simplification simplification() const { return {full, limits}; }
 };
 
@@ -52,9 +52,9 @@ TEST(WantedCount, IsTheLeastOfWhatIsAskedFor) {
 }
 
 TEST(Simplification, StaysWithinItsLimits) {
-    const Ball ball;
+    const SimplifiedBall ball;
     const SimplifiedSurface surface = ball.simplification().toLimits();
-    EXPECT_LE(largestDistance(surface), kDistanceMm + kRounding);
+    EXPECT_LE(largestDistance(surface), SimplifiedBall::kDistanceMm + kSampleRounding);
     EXPECT_LT(surface.triangleCount(), surface.fineTriangles / 8);
     expectSound(meshOf(surface));
     EXPECT_TRUE(surface.heirs.empty());  // nobody asked
@@ -62,7 +62,7 @@ TEST(Simplification, StaysWithinItsLimits) {
 
 // Merging the full surface's vertices into their heirs gives the surface.
 TEST(Simplification, KeepsHeirsThatMakeTheSurface) {
-    Ball ball;
+    SimplifiedBall ball;
     ball.limits.keepsHeirs = true;
     for (const bool toCount : {false, true}) {
         const SimplifiedSurface surface = toCount ? ball.simplification().toCount({{}, 0.9}, 50)
@@ -86,20 +86,21 @@ TEST(Simplification, KeepsHeirsThatMakeTheSurface) {
 }
 
 TEST(Simplification, MakesTheWantedCount) {
-    const Ball ball;
+    const SimplifiedBall ball;
     for (const double reduction : {0.3, 0.75, 0.9}) {
         const WantedCount wanted{{}, reduction};
         const SimplifiedSurface surface = ball.simplification().toCount(wanted, 0);
         EXPECT_LE(surface.triangleCount(), wanted.of(surface.fineTriangles)) << reduction;
         EXPECT_GE(surface.triangleCount(), wanted.of(surface.fineTriangles) - 1) << reduction;
-        EXPECT_LE(largestDistance(surface), kDistanceMm + kRounding) << reduction;
+        EXPECT_LE(largestDistance(surface), SimplifiedBall::kDistanceMm + kSampleRounding)
+            << reduction;
         expectSound(meshOf(surface));
     }
 }
 
 /// Whatever the round before made of it: no round leads below the count for good.
 TEST(Simplification, NoCountIsPassed) {
-    const Ball ball;
+    const SimplifiedBall ball;
     const std::int64_t fine = ball.simplification().toCount({{}, 0.0}, 0).fineTriangles;
     for (double part = 0.9; part > 0.15; part *= 0.8) {
         const auto wanted = static_cast<std::int64_t>(part * static_cast<double>(fine));
@@ -110,7 +111,7 @@ TEST(Simplification, NoCountIsPassed) {
 }
 
 TEST(Simplification, ASettledSurfaceStaysAsItIs) {
-    Ball ball;
+    SimplifiedBall ball;
     constexpr double kFar = 1e6;
     ball.full.stayIn({{kFar, kFar, kFar}, {kFar, kFar, kFar}}, BoundingBox::empty());
     const SimplifiedSurface surface = ball.simplification().toLimits();
@@ -119,18 +120,18 @@ TEST(Simplification, ASettledSurfaceStaysAsItIs) {
 }
 
 TEST(Simplification, GoesFartherForACountWhereItMay) {
-    const Ball ball;
+    const SimplifiedBall ball;
     const WantedCount wanted{40, {}};
     EXPECT_GT(ball.simplification().toCount(wanted, 0).triangleCount(), 60);
     const SimplifiedSurface surface = ball.simplification().toCount(wanted, 50);
     EXPECT_LE(surface.triangleCount(), 40);
     EXPECT_GE(surface.triangleCount(), 39);
-    EXPECT_GT(largestDistance(surface), kDistanceMm);
+    EXPECT_GT(largestDistance(surface), SimplifiedBall::kDistanceMm);
     expectSound(meshOf(surface));
 }
 
 TEST(Simplification, FitsEveryVertexInTheEnd) {
-    const Ball ball;
+    const SimplifiedBall ball;
     const SimplifiedSurface surface = ball.simplification().toLimits();
     EXPECT_EQ(
         std::count(surface.states.begin(), surface.states.end(), detail::Patch::State::Fitted),

@@ -67,6 +67,12 @@ struct TopologyReport {
     std::int64_t count(TopologyDefect defect) const {
         return defects[static_cast<std::size_t>(defect)];
     }
+    /// Sum over the components.
+    std::int64_t eulerCharacteristic() const {
+        std::int64_t sum = 0;
+        for (const SurfaceComponent& component : components) sum += component.eulerCharacteristic();
+        return sum;
+    }
     /// No edge has a free side. (True of an empty mesh, as is all of the following.)
     bool isClosed() const { return count(TopologyDefect::BoundaryEdge) == 0; }
     /// Every edge lies in at most two triangles, the triangles of every vertex are one fan.

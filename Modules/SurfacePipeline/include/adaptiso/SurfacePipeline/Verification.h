@@ -15,9 +15,6 @@ struct Verification {
     double maxMm = 0;          ///< the largest of them
 };
 
-/// Sum over all components.
-std::int64_t eulerCharacteristic(const TopologyReport& topology);
-
 /// Same components and holes, as far as their numbers say.
 bool hasSameShape(const TopologyReport& a, const TopologyReport& b);
 
