@@ -20,7 +20,7 @@ cases=${CASES:-$top/../shared/data}
 . Applications/quickstart/packages.sh
 installPackages Applications/quickstart/packages.txt Testing/packages.txt Testing/Fuzz/packages.txt
 
-cmake --log-level=WARNING --preset fuzz
+cmake --log-level=WARNING --preset fuzz -DCMAKE_UNITY_BUILD=ON
 cmake --build --preset fuzz
 programs=$top/build/fuzz/Testing/Fuzz
 found=$top/build/fuzz/found
