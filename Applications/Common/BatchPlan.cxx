@@ -4,6 +4,7 @@
 #include <iostream>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string_view>
@@ -87,10 +88,11 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch,
         if (holdsName(value) || items.size() == 1) continue;
         const std::string stray = strayValue(items);
         throw UsageError(
-            !stray.empty() ? stray
-                           : name + " " + value +
-                                 ": needs {name} in it, or the runs for all inputs would write the "
-                                 "same");
+            !stray.empty()
+                ? stray
+                : name + " " + value +
+                      ": needs {name} in it, or a / at its end for a folder, or the runs "
+                      "for all inputs would write the same");
     }
 }
 
@@ -270,21 +272,27 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
     }
     if (batch.table == "-") throw UsageError("--csv -: give a file");
     std::set<fs::path> outputs;
-    for (const auto& [option, file] : {std::pair("--summary", running.summary),
-                                       {"--csv", batch.table},
-                                       {"--json", fs::path(common.json)},
-                                       {"--log", logFile()}}) {
+    struct Output {
+        std::string option;
+        fs::path file;
+        std::optional<TextKind> kind;
+    };
+    for (const auto& [option, file, kind] :
+         {Output{"--summary", running.summary, TextKind::Page},
+          Output{"--csv", batch.table, TextKind::Table},
+          Output{"--json", fs::path(common.json), TextKind::Report},
+          Output{"--log", logFile(), {}}}) {
         if (file.empty() || file == "-") continue;
         std::error_code error;
         if (!outputs.insert(fs::weakly_canonical(fs::absolute(file, error), error)).second) {
-            throw UsageError(std::string(option) + " " + file.string() +
-                             ": is the name of another output too");
+            throw UsageError(option + " " + file.string() + ": is the name of another output too");
         }
         if (!batch.list.empty() && batch.list != "-") checkNotInput(file, batch.list);
         checkOutput(file, file == running.summary ? running.summaryFolder : fs::path());
         for (const PlannedRun& run : runs) {
             for (const fs::path& input : run.inputs) checkNotInput(file, input);
         }
+        if (kind) requireKind(option, file, *kind);
     }
     std::string lines;
     running.jsonLines = &lines;

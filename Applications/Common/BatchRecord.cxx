@@ -226,20 +226,21 @@ Json lineJson(const RunRecord& record) {
         error = {{"text", record.error}};
         if (!record.files.empty()) error["file"] = record.files.front();
     }
-    return {{"schema", "adaptiso-batch/1"},
-            {"program", {{"name", record.program}, {"version", programVersion()}}},
-            {"name", record.name},
-            {"files", record.files},
-            {"passed", record.hasPassed()},
-            {"exitCode", record.signal == 0 ? Json(record.exitCode) : Json(nullptr)},
-            {"signal", record.signal != 0 ? Json(record.signal) : Json(nullptr)},
-            {"error", std::move(error)},
-            {"warnings", record.warnings},
-            {"earlierRun", record.isOfEarlierRun},
-            {"madeAgain", record.madeAgain.empty() ? Json(nullptr) : Json(record.madeAgain)},
-            {"outputs", record.outputs},
-            {"seconds", number(record.seconds)},
-            {"report", record.report}};
+    return {
+        {"schema", "adaptiso-batch/1"},
+        {"program", {{"name", record.program}, {"version", programVersion()}}},
+        {"name", record.name},
+        {"files", record.files},
+        {"passed", record.hasEnded && record.hasPassed()},
+        {"exitCode", record.hasEnded && record.signal == 0 ? Json(record.exitCode) : Json(nullptr)},
+        {"signal", record.signal != 0 ? Json(record.signal) : Json(nullptr)},
+        {"error", std::move(error)},
+        {"warnings", record.warnings},
+        {"earlierRun", record.isOfEarlierRun},
+        {"madeAgain", record.madeAgain.empty() ? Json(nullptr) : Json(record.madeAgain)},
+        {"outputs", record.outputs},
+        {"seconds", number(record.seconds)},
+        {"report", record.report}};
 }
 
 void addResult(const ChildResult& result, const std::vector<fs::path>& inputs, RunRecord& record) {

@@ -60,6 +60,8 @@ void OutputPlan::check(const CommonOptions& common, const ReportOptions& report)
         for (const fs::path& input : inputs_) checkNotInput(output, input);
         checkOutput(output);
     }
+    if (hasJsonFile(common)) requireKind("--json", common.json, TextKind::Report);
+    if (!report.page.empty()) requireKind("--report", report.page, TextKind::Page);
 }
 
 ProgramRun::ProgramRun(std::string program, const CommonOptions& common,

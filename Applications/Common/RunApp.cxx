@@ -8,6 +8,8 @@
 #endif
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <exception>
 #include <iostream>
 #include <memory>
@@ -208,8 +210,25 @@ std::string shortHelp(const CLI::App& app) {
            "\nOf one option: " + app.get_name() + " --help OPTION\n";
 }
 
-/// Of --help the options that go by `word` or, where none does, that hold it in name or text; and
-/// what other programs' users mean by it. \throws UsageError  there is nothing
+/// A word of the text begins with `word`; hyphens count for nothing: "leadfield" is "lead-field".
+bool holdsBeginning(const std::string& text, std::string word) {
+    std::erase(word, '-');
+    std::string plain;
+    std::vector<std::size_t> begins;
+    char before = ' ';
+    for (const char c : text) {
+        const bool isWithin = std::isalnum(static_cast<unsigned char>(before)) != 0;
+        before = c;
+        if (c == '-') continue;
+        if (!isWithin) begins.push_back(plain.size());
+        plain += c;
+    }
+    return std::ranges::any_of(
+        begins, [&](std::size_t begin) { return plain.compare(begin, word.size(), word) == 0; });
+}
+
+/// Of --help the options that go by `word` or, where none does, that hold a word that begins so in
+/// name or text; and what other programs' users mean by it. \throws UsageError  there is nothing
 std::string helpOn(const CLI::App& app, const std::string& word) {
     const std::string name =
         lowerCase(word.substr(std::min(word.find_first_not_of('-'), word.size())));
@@ -222,8 +241,7 @@ std::string helpOn(const CLI::App& app, const std::string& word) {
         for (const char* const dashes : {",", ",-", ",--"}) {
             if (names.find(dashes + name + ",") != std::string::npos) exact += text;
         }
-        if (name.size() > 1 &&
-            lowerCase(names + option->get_description()).find(name) != std::string::npos) {
+        if (name.size() > 1 && holdsBeginning(lowerCase(names + option->get_description()), name)) {
             holding += text;
         }
         for (const std::string& own : option->get_lnames()) known.push_back(own);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include <fstream>
 #include <iostream>
 #include <new>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -91,6 +93,16 @@ Json errorJson(const Verdict& verdict) {
     return json;
 }
 
+/// The file begins so, after blanks, or holds nothing else.
+bool begins(const fs::path& path, std::string_view text) {
+    std::ifstream file(path, std::ios::binary);
+    std::string found(text.size(), '\0');
+    file >> std::ws;
+    if (file.peek() == std::ifstream::traits_type::eof()) return true;
+    file.read(found.data(), static_cast<std::streamsize>(found.size()));
+    return lowerCase(found) == text;
+}
+
 /// A report may go there: no other word names it, and nothing is there, or no file, or a report.
 bool mayReplace(const fs::path& path) {
     if (path.string().find('{') != std::string::npos) return false;  // a placeholder
@@ -100,10 +112,7 @@ bool mayReplace(const fs::path& path) {
     };
     const auto isSame = [&](const std::string& word) { return whole(word) == whole(path); };
     if (std::ranges::any_of(commandLine().words, isSame)) return false;
-    if (!fs::is_regular_file(path, error)) return !fs::is_directory(path, error);
-    std::ifstream file(path, std::ios::binary);
-    const int first = (file >> std::ws).peek();
-    return first == '{' || first == std::ifstream::traits_type::eof();
+    return fs::is_regular_file(path, error) ? begins(path, "{") : !fs::is_directory(path, error);
 }
 
 std::string internal(const char* what) {
@@ -229,9 +238,25 @@ void writeFailureReport(const std::string& program, const Verdict& verdict) {
     }
 }
 
+void requireKind(const std::string& option, const fs::path& file, TextKind kind) {
+    struct Kind {
+        const char* name;
+        std::string_view beginning;
+    };
+    constexpr std::array<Kind, 3> kKinds{{{"JSON report", "{"},
+                                          {"table of runs", "run,input,state"},
+                                          {"HTML page", "<!doctype html"}}};
+    const Kind& own = kKinds[static_cast<std::size_t>(kind)];
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || begins(file, own.beginning)) return;
+    throw FileError(option + " " + file.string() + ": exists and is no " + own.name +
+                    "; name a new file");
+}
+
 void checkReportFile(const CommonOptions& common, const std::filesystem::path& input) {
     if (!common.wantsJson() || common.wantsJsonOnStdout()) return;
     checkNotInput(common.json, input);
+    requireKind("--json", common.json, TextKind::Report);
     checkOutput(common.json);
 }
 

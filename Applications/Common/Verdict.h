@@ -69,8 +69,15 @@ void flushResults();
 void printResults(const CommonOptions& common, const std::string& json,
                   const std::function<void(std::ostream&)>& printText);
 
+/// What a program writes besides surfaces and images, by how it begins.
+enum class TextKind { Report, Table, Page };
+/// \throws FileError  a file is there that is not of this kind: someone's data, as when a shell
+///         puts the names of meshes behind --json
+void requireKind(const std::string& option, const std::filesystem::path& file, TextKind kind);
+
 /// For programs whose only output is a report.
-/// \throws FileError when the file of --json would overwrite `input` or can't be written
+/// \throws FileError when the file of --json would overwrite `input` or other data, or can't be
+///         written
 void checkReportFile(const CommonOptions& common, const std::filesystem::path& input);
 
 /// printResults(), and writes `json` to the file of --json: both or neither.

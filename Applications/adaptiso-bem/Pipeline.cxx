@@ -130,13 +130,39 @@ void checkSubject(const BemOptions& options) {
     }
 }
 
+/// Surfaces and models in the subject's folder that this run leaves there: MNE-Python would take
+/// them for this model's.
+void warnOfOtherModel(BemRun& run) {
+    const BemOptions& options = run.options;
+    if (options.subject.empty() || options.isDryRun) return;
+    std::vector<std::string> names;
+    for (const std::string& name : bemFileNames()) {
+        if (name.ends_with(".surf")) names.push_back(name);
+    }
+    names.push_back(options.subject + "-" + kFiffModel);
+    const std::vector<fs::path> written = subjectPaths(options);
+    std::string others;
+    for (const std::string& name : names) {
+        const fs::path path = options.subjectsDir / options.subject / "bem" / name;
+        std::error_code error;
+        if (!fs::exists(path, error) || std::ranges::find(written, path) != written.end()) continue;
+        others += (others.empty() ? "" : ", ") + name;
+    }
+    if (others.empty()) return;
+    run.model.warnings.push_back(
+        {"other-model",
+         "keeps files of another model, which MNE-Python takes for this one's; remove them: " +
+             others,
+         options.subject + "/bem"});
+}
+
 /// Checks the outputs before an input is read.
 void checkOutputs(const BemOptions& options) {
     OutputPlan plan(inputsOf(options));
     if (!options.isDryRun) {
+        checkSubject(options);
         plan.checkFolder(options.output);
         AtomicFolder::check(options.output, replaceable(options));
-        checkSubject(options);
         for (const fs::path& path : subjectPaths(options)) plan.add("--subject", path);
     }
     plan.check(options.common, options.report);
@@ -285,6 +311,7 @@ int runBem(const BemOptions& options) {
     run.model.source = sourceOf(options);
     const SubjectFolder subjectFolder(options);
     checkOutputs(options);
+    warnOfOtherModel(run);
     requireMesher(options.tetrahedra);
     readElectrodes(run);
 

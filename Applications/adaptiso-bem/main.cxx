@@ -275,8 +275,8 @@ void declareElectrodes(CLI::App& app, BemOptions& options) {
         {{"ras", CoordinateFrame::Ras},
          {"lps", CoordinateFrame::Lps},
          {"tkras", CoordinateFrame::TkRas}},
-        "Their frame (default: what the file says; else by its nasion and ears; else scanner "
-        "RAS)");
+        "Their frame (default: what the file says; else by its nasion and ears; without these the "
+        "file is refused)");
     group.choice<PositionSystem>("--montage", options.model.electrodes.positions,
                                  {{"10-20", PositionSystem::TenTwenty},
                                   {"10-10", PositionSystem::TenTen},

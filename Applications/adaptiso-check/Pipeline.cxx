@@ -177,7 +177,7 @@ private:
         if (!walls || !walls->hasWall() || walls->leastMm >= options_.wallLimitMm()) return;
         run_.warnings.push_back(
             {"thin-walls",
-             "walls below " + formatMeasure(walls->thinAreaMm2) + " mm2 are thinner than " +
+             formatMeasure(walls->thinAreaMm2) + " mm2 of wall are thinner than " +
                  formatNumber(options_.wallLimitMm()) + " mm; a printer may leave holes there",
              baseName(surface.file)});
     }

@@ -73,6 +73,12 @@ int refuse(const Options& options) {
                      (near.empty() ? "; `adaptiso help WORD` finds what does it" : near));
 }
 
+/// The same of a word after help. \throws UsageError
+int refuseHelp(const Options& options) {
+    throw UsageError("help " + shown(options.words.front().string()) +
+                     ": no program or option is named so, and no help has the word");
+}
+
 bool isProgram(std::string_view word) {
     return std::ranges::any_of(kPrograms, [&](const Entry& entry) { return word == entry.word; });
 }
@@ -121,12 +127,17 @@ int main(int argc, char** argv) {
         argv[2] = option.data();
         return start(program, argv);
     }
-    if (helps && argc == 3 && argv[2][0] != '-' && printHelpOn(argv[2])) return 0;
+    if (helps && argc > 2 && argv[2][0] != '-') {
+        std::string asked = argv[2];  // "help fill holes": "fill-holes"
+        for (int n = 3; n < argc; ++n) asked += std::string("-") + argv[n];
+        if (printHelpOn(asked)) return 0;
+    }
     const bool isOwn = argc < 2 || word == "help";
+    const bool isAsked = word == "help" && argc > 2;
     const char* const own[] = {argv[0], argc > 2 ? argv[2] : "--help"};
     return adaptiso::runApp(
         isOwn ? 2 : argc, isOwn ? own : argv,
         {"adaptiso", "Starts the programs of adaptiso: adaptiso mesh ... is adaptiso-mesh ...",
          footer()},
-        declareOptions, refuse);
+        declareOptions, isAsked ? refuseHelp : refuse);
 }

@@ -106,6 +106,8 @@ class Electrodes(BemTest):
         done = self.bem(*self.labels(), "--electrodes", "cap.sfp", *LANDMARKS, "-o", "model")
         self.assert_on_skin(self.table())
         self.assertIn("cap.sfp: does not say its unit; taken for cm", done.stderr)
+        self.assertEqual([note for note in self.report()["notes"] if note.startswith("landmarks")],
+                         ["landmarks: those given are kept; the file's lie off: nasion by 0.0 mm, left ear by 0.0 mm, right ear by 0.0 mm"])
 
     def test_directions_are_taken_for_a_sphere(self):
         nasion, left, right = "1 0 .5 Nz\n", "2 -90 .5 LPA\n", "3 90 .5 RPA\n"

@@ -202,7 +202,12 @@ class OneCommand(ApplicationTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("adaptiso-mesh\ndecimate: did you mean --reduction?\n\n", done.stdout)
         self.assertIn("adaptiso-bem\ndecimate: did you mean --vertices?\n\n", done.stdout)
-        self.assertEqual(run_program(self.folder, "adaptiso", "help", "no-such-word").returncode, USAGE)
+        done = run_program(self.folder, "adaptiso", "help", "no-such-word")
+        self.assertEqual(done.returncode, USAGE)
+        self.assertIn("help no-such-word: no program or option is named so, and no help has the word", done.stderr)
+        # hyphens or none, and words by their beginning: ico is not in DICOM
+        self.assertIn("--lead-field", run_program(self.folder, "adaptiso", "help", "leadfield").stdout)
+        self.assertNotIn("adaptiso-mesh", run_program(self.folder, "adaptiso", "help", "ico").stdout)
 
     def test_refuses_other_words(self):
         done = run_program(self.folder, "adaptiso", "mehs", "--iso", "3")

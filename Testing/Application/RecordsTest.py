@@ -277,6 +277,8 @@ class SummaryPage(RecordsTest):
         process.kill()
         process.communicate(timeout=60)
         self.assertIn("not finished", self.rows()[1])
+        left = [json.loads(path.read_text()) for path in self.path("out").glob("long*.json")]
+        self.assertEqual([(each["ended"], each["passed"], each["exitCode"]) for each in left], [(False, False, None)])
         self.lines(OK, "out/a.stl", "--output-dir", "out", program=CHECK)
         self.assertEqual(self.rows()[0]["long", "mesh"][0], "not finished")
         self.assertEqual(self.rows()[1], "1 of 7 failed, 2 not finished")

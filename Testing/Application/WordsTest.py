@@ -88,6 +88,13 @@ WRONG = [
     (USAGE, "--conductivity: its numbers have commas and no blanks between them; give 0.3,0.006,0.3 ", BEM,
      ("--t1", "ball.nii", "-o", "m", "--conductivity", "0.3,", "0.006", "0.3")),
     (BAD_INPUT, "--log ball.nii: exists and is no log; name a new file", MESH, (*BALL, "--log", "ball.nii")),
+    # what a shell makes of --json *.off
+    (BAD_INPUT, "--json a.off: exists and is no JSON report; name a new file", MESH, (*BALL, "--json", "a.off")),
+    (BAD_INPUT, "--report a.off: exists and is no HTML page; name a new file", MESH, (*BALL, "--report", "a.off")),
+    (BAD_INPUT, "--csv a.off: exists and is no table of runs; name a new file", MESH, ("ball.nii", "flat.nii", "--iso", "100", "--csv", "a.off")),
+    (USAGE, "--eeg: there is no such option; three layers, as EEG needs, are the default", BEM, ("--t1", "ball.nii", "-o", "m", "--eeg")),
+    (USAGE, "-f: .*bet IMAGE OUT -f 0.4", BEM, ("--t1", "ball.nii", "-o", "m", "-f", "0.4")),
+    (USAGE, "--list: .*adaptiso-bids makes those of many", BEM, ("--t1", "ball.nii", "-o", "m", "--list", "x.txt")),
     # a folder that is named like a file
     (USAGE, r"--output bones.ply: is a folder to make.*-o bones --format ply", "adaptiso-labels",
      ("ball.nii", "-o", "bones.ply")),

@@ -141,6 +141,16 @@ void guess(BemModel& model, BemElectrodes& placed) {
                                   " mm; give them where that matters"});
 }
 
+/// How far the file's nasion and ears, brought to the head, lie from those given.
+std::string offGiven(const Landmarks& given, const Landmarks& moved) {
+    const auto off = [](const Vec3& a, const Vec3& b) {
+        return formatFixed(norm(b - a), 1) + " mm";
+    };
+    return "nasion by " + off(given.nasionMm, moved.nasionMm) + ", left ear by " +
+           off(given.leftEarMm, moved.leftEarMm) + ", right ear by " +
+           off(given.rightEarMm, moved.rightEarMm);
+}
+
 /// Head points, where the file has enough, say better than nasion and ears where the head is;
 /// these are then the file's own.
 void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
@@ -156,11 +166,8 @@ void fitHeadPoints(const std::vector<NamedPoint>& points, const Landmarks& own,
     placed.headPoints = HeadPoints{std::ssize(headPoints), fit};
     const Landmarks fitted{move(own.nasionMm), move(own.leftEarMm), move(own.rightEarMm)};
     if (const auto& given = model.givenElectrodes.landmarks) {
-        const auto off = [](const Vec3& a, const Vec3& b) { return formatFixed(norm(b - a), 1); };
-        model.notes.push_back("landmarks: the head points moved those given: nasion by " +
-                              off(given->nasionMm, fitted.nasionMm) + " mm, left ear by " +
-                              off(given->leftEarMm, fitted.leftEarMm) + " mm, right ear by " +
-                              off(given->rightEarMm, fitted.rightEarMm) + " mm");
+        model.notes.push_back("landmarks: the head points moved those given: " +
+                              offGiven(*given, fitted));
     }
     placed.landmarks = fitted;
     placed.landmarkOrigin = "file";
@@ -191,8 +198,16 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
     guessUnit(file, name, model);
     const std::optional<Landmarks> own = landmarksOf(file.points);
     AffineTransform move;
+    const auto tellOfOwn = [&] {
+        const auto& given = model.givenElectrodes.landmarks;
+        if (!given || !own || placed.headPoints) return;
+        const Landmarks moved{move(own->nasionMm), move(own->leftEarMm), move(own->rightEarMm)};
+        model.notes.push_back("landmarks: those given are kept; the file's lie off: " +
+                              offGiven(*given, moved));
+    };
     if (const auto frame = frameOf(model)) {
         move = toLps(*frame, model);
+        tellOfOwn();
         if (own && !placed.landmarks) {
             placed.landmarks =
                 Landmarks{move(own->nasionMm), move(own->leftEarMm), move(own->rightEarMm)};
@@ -211,6 +226,7 @@ std::vector<NamedPoint> inModelSpace(BemModel& model, BemElectrodes& placed) {
         model.notes.push_back("electrodes: brought to the head by nasion and ears" +
                               (file.frameName.empty() ? "" : " (frame " + file.frameName + ")"));
         fitHeadPoints(file.points, *own, move, model, placed);
+        tellOfOwn();
         if (!electrodes.empty()) {
             const auto moved = [&](const Landmarks& head) {
                 const AffineTransform by = byLandmarks(*own, head);

@@ -222,16 +222,18 @@ std::string withoutColons(std::string name) {
     return name;
 }
 
-/// Channels of raw data lie where their electrode does.
-std::optional<std::string> channelAt(const fiff::Content& content, const Vec3& metres) {
+/// Channels of raw data lie where their electrode does. Of several at one place, as T3 and T7, each
+/// is taken once.
+std::optional<std::string> channelAt(const fiff::Content& content, const Vec3& metres,
+                                     std::set<std::string>& taken) {
     for (const fiff::Tag& tag : content.tags) {
         if (tag.kind != fiff::kChannelInfo) continue;
         const fiff::Channel channel = fiff::toChannel(tag);
         constexpr std::int32_t kEeg = 2;
         constexpr double kSameMetres = 1e-6;
-        if (channel.kind == kEeg && norm(channel.metres - metres) < kSameMetres) {
-            return toUtf8(channel.name);
-        }
+        if (channel.kind != kEeg || norm(channel.metres - metres) >= kSameMetres) continue;
+        std::string name = toUtf8(channel.name);
+        if (taken.insert(name).second) return name;
     }
     return std::nullopt;
 }
@@ -261,6 +263,7 @@ PointFile decodeFiff(std::string_view bytes) {
         for (std::string name; std::getline(list, name, ':');) names.push_back(name);
     }
     std::size_t electrodes = 0;
+    std::set<std::string> taken;
     for (const fiff::Tag& tag : content.tags) {
         if (tag.block != block || tag.kind != fiff::kDigPoint) continue;
         const fiff::DigitizedPoint point = fiff::toPoint(tag);
@@ -275,7 +278,7 @@ PointFile decodeFiff(std::string_view bytes) {
             const std::string name =
                 electrodes < names.size() && !names[electrodes].empty()
                     ? names[electrodes]
-                    : channelAt(content, point.metres).value_or("EEG" + digits);
+                    : channelAt(content, point.metres, taken).value_or("EEG" + digits);
             ++electrodes;
             addPoint(file, name, point.metres, PointKind::Electrode);
         } else {

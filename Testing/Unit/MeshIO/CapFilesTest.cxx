@@ -155,20 +155,23 @@ void append(std::string& bytes, T value) {
 TEST(CapFiles, OfRawFiffHaveTheChannelsNames) {
     const auto fif = testing::temporaryFile("names.fif");
     const NamedPoint points[] = {{"", PointKind::Electrode, {0, 0, 90}},
+                                 {"", PointKind::Electrode, {0, 70, 50}},
                                  {"", PointKind::Electrode, {0, 70, 50}}};
     writeFiffPoints(points, fif);
     std::string bytes = testing::bytesOf(fif);
     EXPECT_EQ(decodePoints(bytes, ".fif", "a").points[1].name, "EEG002");
-    // a channel in front of the digitizer's block: tag, then its struct of 96 bytes
+    // channels in front of the digitizer's block: tag, then its struct of 96 bytes
     std::string channel;
-    for (const std::int32_t word : {203, 30, 96, 0, 1, 1, 2}) append(channel, word);
-    for (const float value : {1.0F, 1.0F}) append(channel, value);
-    append(channel, std::int32_t{1});
-    for (const float metres : {0.0F, 0.07F, 0.05F}) append(channel, metres);
-    channel.append(9 * 4, '\0');
-    append(channel, std::int32_t{107});
-    append(channel, std::int32_t{0});
-    channel += std::string("Fz") + std::string(14, '\0');
+    for (const char* const name : {"T3", "T7"}) {  // at one place, as in MNE's standard_1020
+        for (const std::int32_t word : {203, 30, 96, 0, 1, 1, 2}) append(channel, word);
+        for (const float value : {1.0F, 1.0F}) append(channel, value);
+        append(channel, std::int32_t{1});
+        for (const float metres : {0.0F, 0.07F, 0.05F}) append(channel, metres);
+        channel.append(9 * 4, '\0');
+        append(channel, std::int32_t{107});
+        append(channel, std::int32_t{0});
+        channel += std::string(name) + std::string(14, '\0');
+    }
     std::string block;
     for (const std::int32_t word : {104, 3, 4, 0, 107}) append(block, word);
     const std::size_t at = bytes.find(block);
@@ -176,7 +179,8 @@ TEST(CapFiles, OfRawFiffHaveTheChannelsNames) {
     bytes.insert(at, channel);
     const PointFile file = decodePoints(bytes, ".fif", "a");
     EXPECT_EQ(file.points[0].name, "EEG001");  // no channel lies there
-    EXPECT_EQ(file.points[1].name, "Fz");
+    EXPECT_EQ(file.points[1].name, "T3");
+    EXPECT_EQ(file.points[2].name, "T7");
 }
 
 }  // namespace

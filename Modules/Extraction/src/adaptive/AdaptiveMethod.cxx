@@ -30,20 +30,10 @@ public:
     }
 
     AdaptiveResult run() {
-        for (int run = 0; run < (mends_ ? kMostRuns : 1); ++run) {
-            report(run, 0);
-            ++work_.runs;
-            Attempt attempt = simplify(run > 0);
-            report(run, 0.6);
-            mayUndo_ = mostUndone(attempt.surface);
-            const std::int64_t triangles = attempt.surface.triangleCount();
-            if (!keepsPromises(attempt)) continue;
-            if (run + 1 < kMostRuns && !keepsCount(attempt.surface, triangles)) {
-                fewer_ = std::max<std::int64_t>(0, attempt.surface.triangleCount() - triangles);
-                continue;
-            }
-            report(run, 1);
-            return resultOf(attempt);
+        for (;;) {
+            if (auto result = runWithinBound()) return *std::move(result);
+            if (!hasTighterBound()) break;
+            boundMm_ = std::max(defaultBoundMm(), kTighterBound * *boundMm_);
         }
         throw InternalError(
             "the adaptive method could not prove its mesh sound and within the bound; nothing is "
@@ -51,6 +41,27 @@ public:
     }
 
 private:
+    /// \return  nothing where it could not be proved, or too much of the full surface came back
+    std::optional<AdaptiveResult> runWithinBound() {
+        const int mostRuns = mends_ ? kMostRuns : 1;
+        for (int run = 0; run < mostRuns; ++run) {
+            report(work_.runs, 0);
+            ++work_.runs;
+            Attempt attempt = simplify(run > 0);
+            report(work_.runs - 1, 0.6);
+            mayUndo_ = mostUndone(attempt.surface, run + 1 == mostRuns);
+            const std::int64_t triangles = attempt.surface.triangleCount();
+            if (!keepsPromises(attempt)) continue;
+            if (run + 1 < kMostRuns && !keepsCount(attempt.surface, triangles)) {
+                fewer_ = std::max<std::int64_t>(0, attempt.surface.triangleCount() - triangles);
+                continue;
+            }
+            report(work_.runs - 1, 1);
+            return resultOf(attempt);
+        }
+        return std::nullopt;
+    }
+
     /// Result of a run, and its proof.
     struct Attempt {
         SimplifiedSurface surface;
@@ -173,12 +184,16 @@ private:
         return true;
     }
 
+    double defaultBoundMm() const {
+        return AdaptiveOptions::kDefaultMaxErrorVoxels * frame_.narrowestMm();
+    }
+    /// A surface within a tighter bound will do where too much of the full one came back.
+    bool hasTighterBound() const { return mends_ && boundMm_ && *boundMm_ > defaultBoundMm(); }
+
     /// Vertices that may come back in this run. By a large bound a place can take more and more
     /// with it, where a run that keeps nearer has none.
-    std::int64_t mostUndone(const SimplifiedSurface& surface) const {
-        if (work_.runs == kMostRuns || !isBoundLarge()) {
-            return LocalUndo::kAny;
-        }
+    std::int64_t mostUndone(const SimplifiedSurface& surface, bool isLast) const {
+        if (!hasTighterBound() && (isLast || !isBoundLarge())) return LocalUndo::kAny;
         return static_cast<std::int64_t>(kMostUndone * static_cast<double>(surface.points.size()));
     }
 
@@ -219,7 +234,7 @@ private:
 
     std::optional<double> boundOf(const AdaptiveOptions& adaptive) const {
         if (adaptive.maxErrorMm || wanted_.isGiven()) return adaptive.maxErrorMm;
-        return AdaptiveOptions::kDefaultMaxErrorVoxels * frame_.narrowestMm();
+        return defaultBoundMm();
     }
 
     void report(int run, double fraction) const {

@@ -221,9 +221,12 @@ inline constexpr double kMendCosine = 0.3;
 /// Around places that mending does not help vertices come apart again, voxels: in the first
 /// attempt, and twice as far in each next one.
 inline constexpr double kUndoReach = 1;
-/// By a bound above half a voxel a run ends, and another keeps nearer, when this part of the
-/// vertices has come apart: ch2bet at two voxels came back as a whole around 39 places.
+/// By a bound above the default, and by one above half a voxel, a run ends when this part of the
+/// vertices has come apart, and another keeps nearer: ch2bet at two voxels came back as a whole
+/// around 39 places, ch2 at 40 within half a voxel too.
 inline constexpr double kMostUndone = 0.25;
+/// Where that does not help either, the bound is tightened to this part of it, down to the default.
+inline constexpr double kTighterBound = 0.7;
 /// So many times more comes apart to keep the surface a manifold.
 inline constexpr int kMostWidenings = 8;
 
