@@ -46,6 +46,14 @@ class Count(ApplicationTest):
                 mended += surface["adaptive"]["placesMended"]
         self.assertGreater(mended, 0)  # where triangles crossed
 
+    # within half a voxel places beside its noise take more and more of the full surface with them
+    @unittest.skipUnless(HEAD.exists(), "needs mricron-data")
+    def test_a_wide_bound_is_tightened_where_all_would_come_back(self):
+        done, _, surface = self.surface(HEAD, "--iso", 40, "--max-error", 0.5, "-q", "-o", "head.vtp")
+        self.assertEqual((done.returncode, done.stderr), (OK, ""))
+        self.assertLess(surface["triangles"], 129_796)  # as many as within 0.3 mm
+        self.assertLess(surface["errorBoundMm"], 0.4)
+
     # some places of it can't be mended, and come apart again
     @unittest.skipUnless(BRAIN.exists(), "needs mricron-data")
     def test_the_default_bound_takes_one_run_and_tells_of_its_work(self):
