@@ -87,12 +87,10 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch,
                 name + " " + value + ": must be a name below --output-dir");
         if (holdsName(value) || items.size() == 1) continue;
         const std::string stray = strayValue(items);
-        throw UsageError(
-            !stray.empty()
-                ? stray
-                : name + " " + value +
-                      ": needs {name} in it, or a / at its end for a folder, or the runs "
-                      "for all inputs would write the same");
+        if (!stray.empty()) throw UsageError(stray);
+        throw UsageError(name + " " + value + ": needs {name} in it" +
+                         (name == kOutputOption ? " (or / at its end, for a folder)" : "") +
+                         ", or the runs for all inputs would write the same");
     }
 }
 

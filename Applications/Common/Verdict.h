@@ -69,10 +69,11 @@ void flushResults();
 void printResults(const CommonOptions& common, const std::string& json,
                   const std::function<void(std::ostream&)>& printText);
 
-/// What a program writes besides surfaces and images, by how it begins.
+/// Text files that programs write: the report of --json, the table of --csv, the page of --report.
 enum class TextKind { Report, Table, Page };
-/// \throws FileError  a file is there that is not of this kind: someone's data, as when a shell
-///         puts the names of meshes behind --json
+/// Refuses to replace a file of another kind: someone's data, as when a shell puts the names of
+/// meshes behind --json. Kinds are known by how a file begins.
+/// \throws FileError  such a file is there
 void requireKind(const std::string& option, const std::filesystem::path& file, TextKind kind);
 
 /// For programs whose only output is a report.

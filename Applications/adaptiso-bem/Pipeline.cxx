@@ -12,6 +12,7 @@
 #include "Common/RunApp.h"
 #include "Run.h"
 #include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Files/AtomicOutput.h"
 #include "adaptiso/HeadModel/Tetrahedra.h"
@@ -130,29 +131,26 @@ void checkSubject(const BemOptions& options) {
     }
 }
 
-/// Surfaces and models in the subject's folder that this run leaves there: MNE-Python would take
-/// them for this model's.
+/// Files in the subject's folder that MNE-Python reads as the model, and that this run leaves
+/// there.
 void warnOfOtherModel(BemRun& run) {
     const BemOptions& options = run.options;
     if (options.subject.empty() || options.isDryRun) return;
-    std::vector<std::string> names;
-    for (const std::string& name : bemFileNames()) {
-        if (name.ends_with(".surf")) names.push_back(name);
-    }
-    names.push_back(options.subject + "-" + kFiffModel);
     const std::vector<fs::path> written = subjectPaths(options);
-    std::string others;
-    for (const std::string& name : names) {
+    std::vector<std::string> others;
+    for (const std::string& name :
+         {bemFileName(HeadSurface::InnerSkull, ".surf"),
+          bemFileName(HeadSurface::OuterSkull, ".surf"),
+          bemFileName(HeadSurface::OuterSkin, ".surf"), options.subject + "-" + kFiffModel}) {
         const fs::path path = options.subjectsDir / options.subject / "bem" / name;
         std::error_code error;
-        if (!fs::exists(path, error) || std::ranges::find(written, path) != written.end()) continue;
-        others += (others.empty() ? "" : ", ") + name;
+        const bool isWritten = std::ranges::find(written, path) != written.end();
+        if (!isWritten && fs::exists(path, error)) others.push_back(name);
     }
     if (others.empty()) return;
     run.model.warnings.push_back(
         {"other-model",
-         "keeps files of another model, which MNE-Python takes for this one's; remove them: " +
-             others,
+         "keeps " + joined(others) + " of another model, which MNE-Python would mix with this one",
          options.subject + "/bem"});
 }
 

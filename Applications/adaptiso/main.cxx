@@ -127,14 +127,12 @@ int main(int argc, char** argv) {
         argv[2] = option.data();
         return start(program, argv);
     }
-    if (helps && argc > 2 && argv[2][0] != '-') {
-        std::string asked = argv[2];  // "help fill holes": "fill-holes"
-        for (int n = 3; n < argc; ++n) asked += std::string("-") + argv[n];
-        if (printHelpOn(asked)) return 0;
-    }
+    std::string asked = argc > 2 ? argv[2] : "--help";  // "help fill holes": "fill-holes"
+    for (int n = 3; n < argc; ++n) asked += std::string("-") + argv[n];
+    if (helps && argc > 2 && asked.front() != '-' && printHelpOn(asked)) return 0;
     const bool isOwn = argc < 2 || word == "help";
     const bool isAsked = word == "help" && argc > 2;
-    const char* const own[] = {argv[0], argc > 2 ? argv[2] : "--help"};
+    const char* const own[] = {argv[0], asked.c_str()};
     return adaptiso::runApp(
         isOwn ? 2 : argc, isOwn ? own : argv,
         {"adaptiso", "Starts the programs of adaptiso: adaptiso mesh ... is adaptiso-mesh ...",

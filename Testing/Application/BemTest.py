@@ -437,8 +437,11 @@ class Output(BemTest):
                              self.path(f"subjects/anna/adaptiso-bem/{name}.surf").read_bytes())
         # one surface in place of three: the others stay, and MNE-Python would read them too
         done = self.bem(*self.labels(), "-s", "anna", "-d", "subjects", "--meg", "--force")
-        self.assertIn("anna/bem: keeps files of another model, which MNE-Python takes for this one's; remove them: "
-                      "outer_skull.surf, outer_skin.surf", done.stderr)
+        self.assertIn("anna/bem: keeps outer_skull.surf, outer_skin.surf of another model, which MNE-Python would mix with this one",
+                      done.stderr)
+        # mri_watershed's brain.surf is no surface of the model
+        (bem / "brain.surf").write_bytes((bem / "inner_skull.surf").read_bytes())
+        self.assertNotIn("another model", self.bem(*self.labels(), "-s", "anna", "-d", "subjects", "--force").stderr)
         self.fails(BAD_INPUT, "subjects/berta: there is no such subject folder", *self.labels(), "-s", "berta", "-d", "subjects")
 
     def test_interrupted_run_leaves_nothing(self):

@@ -205,6 +205,9 @@ class OneCommand(ApplicationTest):
         done = run_program(self.folder, "adaptiso", "help", "no-such-word")
         self.assertEqual(done.returncode, USAGE)
         self.assertIn("help no-such-word: no program or option is named so, and no help has the word", done.stderr)
+        done = run_program(self.folder, "adaptiso", "help", "no", "such", "word")
+        self.assertIn("help no-such-word: no program", done.stderr)
+        self.assertIn("--max-hole", run_program(self.folder, "adaptiso", "help", "fill", "holes").stdout)
         # hyphens or none, and words by their beginning: ico is not in DICOM
         self.assertIn("--lead-field", run_program(self.folder, "adaptiso", "help", "leadfield").stdout)
         self.assertNotIn("adaptiso-mesh", run_program(self.folder, "adaptiso", "help", "ico").stdout)

@@ -60,7 +60,7 @@ constexpr WarningCode kCodes[] = {
     {"noise-kept", "the default bound left noise at full resolution; a stated one thins it", true},
     {"not-finite", "voxels hold NaN or infinity"},
     {"objects-left-aside", "a vendor's DICOM objects without an image were left aside"},
-    {"other-model", "the subject's folder keeps surfaces of another head model"},
+    {"other-model", "the subject's bem folder keeps files of another head model"},
     {"overlap-unmeasured", "the overlap (Dice) could not be measured"},
     {"participants-not-read", "participants.tsv cannot be read, so no participant was looked up"},
     {"parts-dropped",

@@ -23,7 +23,7 @@ HardVolume binaryVolume(
     const Index3& size,
     const std::function<bool(std::int64_t, std::int64_t, std::int64_t)>& isInside);
 
-/// Of the index, as methods are tried with.
+/// Block sizes of the index, in voxels, that the methods are tested with.
 inline constexpr int kBlockSizes[] = {2, 4, 8, 16};
 
 /// A method and how it is asked for.

@@ -17,7 +17,7 @@ inline constexpr const char* kExplicitBigEndian = "1.2.840.10008.1.2.2";
 inline constexpr const char* kDeflatedLittleEndian = "1.2.840.10008.1.2.1.99";
 inline constexpr const char* kRleLossless = "1.2.840.10008.1.2.5";
 
-/// Size of most slices.
+/// Size of most test slices, pixels.
 inline constexpr int kColumns = 4, kRows = 3;
 
 /// A DICOM data set made element by element: (group << 16 | element) -> value. Setting an element

@@ -70,7 +70,7 @@ std::vector<T> countingSamples(std::int64_t count) {
     return samples;
 }
 
-/// What most files hold: 4 x 3 x 2 of them.
+/// The samples of most test files: int16, 4 x 3 x 2 voxels.
 inline const std::string kSamples = samplesOf(countingSamples<std::int16_t>(24));
 
 template <class T>

@@ -49,12 +49,12 @@ inline std::string exampleName(const MeshFormat& format) {
     return "surface" + std::string(format.extensions.front());
 }
 
-/// The same for the names of tests of TEST_P: its extension.
+/// Name of a TEST_P over meshFormats(): the format's extension.
 inline std::string nameOfFormat(const ::testing::TestParamInfo<int>& info) {
     return std::string(meshFormats()[info.param].extensions.front().substr(1));
 }
 
-/// `text` with other words at the first place of some. \pre these are there
+/// `text` with `to` in place of the first `from`. \pre it holds `from`
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;

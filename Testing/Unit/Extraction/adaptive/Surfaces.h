@@ -17,7 +17,7 @@
 
 namespace adaptiso::testing {
 
-/// Of distances of samples: they are kept in single precision.
+/// Tolerance of distances to samples, mm: these are kept in single precision.
 inline constexpr double kSampleRounding = 1e-5;
 
 /// Voxels of 1 mm, axes along x, y, z.
