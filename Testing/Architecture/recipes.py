@@ -39,6 +39,11 @@ class Copy:
         return sorted(str(path.relative_to(self.folder / self.module)) for path in (self.folder / self.module).rglob("*")
                       if path.is_file() and not same(path, self.original / path.relative_to(self.folder / self.module)))
 
+    def of_test(self, name: str) -> Path:
+        """the test, or the unit of a unity build that includes it"""
+        return next(path for path in self.commands if path.name == name
+                    or (path.name.startswith("unity_") and f"/{name}\"" in path.read_text()))
+
     def compile(self, file: Path, like: Path) -> str:
         words = list(self.commands[like])
         output = str(self.folder / (file.stem + ".o"))
@@ -94,7 +99,7 @@ def labels(copy: Copy) -> list:
     copy.insert("CMakeLists.txt", "    src/ListedTables.cxx\n", "    src/Rows.cxx")
     sources = copy.folder / copy.module / "src"
     like = copy.original / "src" / "LabelTable.cxx"
-    test = next(path for path in copy.commands if path.name == "LabelTableTest.cxx")
+    test = copy.of_test("LabelTableTest.cxx")
     copy.run_tests([copy.compile(RECIPES / "ListedTablesTest.cxx", test),
                     *(copy.compile(sources / name, like) for name in ("ListedTables.cxx", "LabelTable.cxx"))],
                    "-*OfTheirPage")
@@ -113,7 +118,7 @@ def check(copy: Copy) -> list:
         .help = "Largest area that passes", .rule = {.least = 0, .unit = "mm2"}}),\n""",
                 "        option<&CheckRules::maxOffMm>(")
     like = copy.original / "src" / "Checks.cxx"
-    test = next(path for path in copy.commands if path.name == "ChecksTest.cxx")
+    test = copy.of_test("ChecksTest.cxx")
     copy.run_tests([copy.compile(RECIPES / "AreaTest.cxx", test), copy.compile(test, test),
                     *(copy.compile(copy.folder / copy.module / "src" / name, like)
                       for name in ("Checks.cxx", "CheckRules.cxx", "SurfaceFacts.cxx"))], "-*OfTheirPage")
@@ -131,7 +136,7 @@ def option(copy: Copy) -> list:
     # where all rows are taken: the command line (--help, pages, README, types for npm) and Python (types, docstrings)
     for taker in ("Applications/Common/Mesher.cxx", "Wrapping/Python/src/OptionRows.cxx"):
         assert "elementOptions()" in (copy.original.parents[1] / taker).read_text(), taker
-    test = next(path for path in copy.commands if path.name == "MesherFilesTest.cxx")
+    test = copy.of_test("MesherFilesTest.cxx")
     copy.run_tests([copy.compile(RECIPES / "RadiusEdgeTest.cxx", test),
                     copy.compile(copy.folder / copy.module / "src/MesherFiles.cxx", copy.original / "src/MesherFiles.cxx")],
                    "RadiusEdge*:Mesher*")
