@@ -153,23 +153,38 @@ private:
             addUnread(surface, file.string() + ": too large for this machine's memory");
             return;
         }
+        std::vector<Solid> solids;
         run_.stage("check", [&] {
             TriangleMesh& mesh = loaded.mesh.file.mesh;
-            surface.facts =
-                measureSurface(mesh, sizeLimitsOf(options_.profileInUse()), options_.maxPairs);
+            solids = separateSolids(mesh, loaded.mesh.file.solids);
+            surface.facts = measureSurface(mesh, sizeLimitsOf(options_.profileInUse()),
+                                           options_.maxPairs, solids);
             if (surface.facts.topology.count(TopologyDefect::IndexOutOfRange) > 0) {
                 replaceBadIndices(mesh);
             }
         });
         if (options_.measuresWalls) {
             run_.stage("walls", [&] {
-                measureWallsOf(loaded.mesh.file.mesh, options_.wallLimitMm(), surface.facts);
+                measureWallsOf(loaded.mesh.file.mesh, options_.wallLimitMm(), surface.facts,
+                               solids);
             });
         }
+        tellSolids(surface, loaded.mesh.file.solids.size());
         surface.checks = judgeSurface(surface.facts, options_);
         warnOfWalls(surface);
         warnOfSize(surface);
         meshes_.push_back(std::move(loaded));
+    }
+
+    void tellSolids(const SurfaceRun& surface, std::size_t count) {
+        if (count < 2) return;
+        const bool areApart = surface.facts.solids > 1;
+        run_.warnings.push_back(
+            {"several-solids",
+             "it holds " + std::to_string(areApart ? surface.facts.solids : count) + " solids, " +
+                 (areApart ? "each checked alone"
+                           : "which were checked as one surface, as not each is closed"),
+             baseName(surface.file)});
     }
 
     void warnOfWalls(const SurfaceRun& surface) {
@@ -199,6 +214,8 @@ private:
         mesh.file = readMesh(mesh.path,
                              {.keepsFaults = true,
                               .inputCoordinates = statedFrame(options_.inputCoordinates, number)});
+        std::erase_if(mesh.file.warnings,
+                      [&](const Warning& w) { return w.code == "several-solids"; });
         addWarnings(run_.warnings, mesh.file.warnings, baseName(mesh.path));
         if (image_ && !mesh.file.frame) {
             throw InvalidInput(
@@ -367,7 +384,7 @@ Verdict verdictOf(const CheckRun& run) {
     return {run.hasPassed() ? kExitOk : kExitCheckFailed};
 }
 
-/// Whether adaptiso-mend mends what failed, and reads the surface.
+/// Whether adaptiso-mend mends what failed, and reads the surface; it would make one of solids.
 bool isForMending(const SurfaceRun& surface) {
     constexpr std::string_view kMended[] = {
         "closed",  "manifoldEdges",         "manifoldVertices",     "consistentOrientation",
@@ -378,7 +395,7 @@ bool isForMending(const SurfaceRun& surface) {
             return check.breaksProfile() && std::ranges::count(keys, check.key) > 0;
         });
     };
-    return fails(kMended) && !fails(kRefused);
+    return surface.facts.solids == 1 && fails(kMended) && !fails(kRefused);
 }
 
 /// \param more  options of adaptiso-mend, a blank before each

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <tuple>
 #include <utility>
 
 #include "Bytes.h"
-#include "adaptiso/Core/Phrases.h"
 
 namespace adaptiso::meshio {
 
@@ -70,6 +70,7 @@ void JoinedMeshes::add(PlacedMesh&& placed, const AffineTransform& transform) {
         placed.mesh = transformed(placed.mesh, transform);
     }
     const TriangleMesh& mesh = placed.mesh;
+    solids_.push_back(std::ssize(mesh_.triangles));
     const auto before = static_cast<VertexId>(mesh_.points.size());
     mesh_.points.insert(mesh_.points.end(), mesh.points.begin(), mesh.points.end());
     mesh_.normals.insert(mesh_.normals.end(), mesh.normals.begin(), mesh.normals.end());
@@ -86,7 +87,6 @@ void JoinedMeshes::add(PlacedMesh&& placed, const AffineTransform& transform) {
     }
     haveColors_ = haveColors_ && !placed.colors.empty();
     colors_.insert(colors_.end(), placed.colors.begin(), placed.colors.end());
-    ++count_;
 }
 
 void JoinedMeshes::moveTo(MeshFile& file, const MeshReadOptions& options) && {
@@ -95,10 +95,10 @@ void JoinedMeshes::moveTo(MeshFile& file, const MeshReadOptions& options) && {
     if (options.keepsPointArrays && haveColors_ && !colors_.empty()) {
         file.pointArrays.push_back({"RGB", std::move(colors_)});
     }
-    if (count_ > 1) {
-        file.warnings.push_back({"several-solids", "it holds " + counted(count_, "mesh", "meshes") +
-                                                       ", which were read as one surface"});
-    }
+    if (solids_.size() < 2) return;
+    file.warnings.push_back({"several-solids", "it holds " + std::to_string(solids_.size()) +
+                                                   " meshes, which were read as one surface"});
+    file.solids = std::move(solids_);
 }
 
 bool isIdentity(const AffineTransform& transform) {

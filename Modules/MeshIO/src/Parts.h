@@ -38,7 +38,7 @@ public:
 private:
     TriangleMesh mesh_;
     std::vector<Color> colors_;
-    std::int64_t count_ = 0;
+    std::vector<std::int64_t> solids_;  ///< the first triangle of each
     bool haveNormals_ = true, haveColors_ = true;
 };
 

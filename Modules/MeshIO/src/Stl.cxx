@@ -165,12 +165,11 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
     std::vector<Corner> corners;
     std::size_t loop = 0;  // corners of the facet at this place
     bool isOpen = false;   // inside a solid
-    std::int64_t solids = 0;
     for (std::string word = lowerCase(source.word()); !word.empty();
          word = lowerCase(source.word())) {
         if (word == "solid" || word == "endsolid") {
             isOpen = word == "solid";
-            solids += isOpen;
+            if (isOpen) file.solids.push_back(std::ssize(corners) / 3);
             const std::size_t begin = source.position();
             std::string_view name = source.line();
             if (const std::size_t facet = lowerCase(name).find("facet normal");
@@ -200,9 +199,12 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
         unsupported("it ends without the word 'endsolid'",
                     "it may be cut off: get it again, or add that line at its end if it is whole");
     }
-    if (solids > 1) {
-        file.warnings.push_back({"several-solids", "it holds " + std::to_string(solids) +
+    if (file.solids.size() > 1) {
+        file.warnings.push_back({"several-solids", "it holds " +
+                                                       std::to_string(file.solids.size()) +
                                                        " solids, which were read as one surface"});
+    } else {
+        file.solids.clear();
     }
     file.frame = marks.frame();
     file.mesh = welded(corners);

@@ -135,12 +135,12 @@ ZipFiles::ZipFiles(std::string_view bytes, std::size_t fileBytes)
         entry.bytes = next<std::uint32_t>(directory);
         const std::size_t name = next<std::uint16_t>(directory),
                           extra = next<std::uint16_t>(directory),
-                          comment = next<std::uint16_t>(directory);
+                          note = next<std::uint16_t>(directory);
         directory.take(8);
         entry.at = next<std::uint32_t>(directory);
         std::string key = lowerCase(directory.take(name));
         ByteSource fields(directory.take(extra));
-        directory.take(comment);
+        directory.take(note);
         while (fields.left() >= 4) {
             const auto kind = next<std::uint16_t>(fields);
             const std::size_t length = next<std::uint16_t>(fields);

@@ -199,6 +199,8 @@ Json factsJson(const SurfaceFacts& facts) {
         {"solidAngleShare", number(facts.solidAngle.share)},
         {"defects", defectsJson(facts)},
         {"examples", examplesJson(facts)},
+        {"solids", facts.solids},
+        {"sharedWallTriangles", facts.sharedWallTriangles},
         {"componentCount", topology.components.size()},
         {"components", componentsJson(facts)},
         {"componentsInsideOut", orNull(facts.insideOut)},

@@ -67,7 +67,8 @@ constexpr CheckRule kDegenerate{
 constexpr CheckRule kDuplicateTriangles{
     "noDuplicateTriangles",
     "no duplicate triangle",
-    "no two triangles have their corners at the same three places",
+    "no two triangles have their corners at the same three places; a wall that two solids of a "
+    "file share is none",
     true,
     true,
     true};
@@ -291,10 +292,31 @@ private:
         return text.empty() ? text : text + " triangles";
     }
 
+    std::string duplicatesText() const {
+        const DuplicateReport& duplicates = facts_.duplicates;
+        std::string text;
+        if (duplicates.triangleCount > 0) {
+            text =
+                counted(duplicates.triangleCount, "triangle lies", "triangles lie") + " on another";
+        }
+        if (!duplicates.triangles.empty()) {
+            text += "; first: triangle " + std::to_string(duplicates.triangles[0]);
+        }
+        if (facts_.sharedWallTriangles > 0) {
+            addPart(text,
+                    counted(facts_.sharedWallTriangles, "triangle is", "triangles are") +
+                        " of walls that two solids share",
+                    "; ");
+            ;
+        }
+        return text;
+    }
+
     void judgePieces() {
         const std::int64_t components = std::ssize(facts_.topology.components);
         std::string pieces = counted(components, "component") + largestComponents();
-        if (rules_.profile == Profile::Print) {
+        if (rules_.profile == Profile::Print &&
+            components > static_cast<std::int64_t>(facts_.solids)) {
             pieces += "; each is printed: adaptiso-mesh --largest --fill-cavities leaves one";
         }
         addUnless(kOneComponent, components != 1, pieces);
@@ -323,12 +345,7 @@ private:
                       firstOf(TopologyDefect::DegenerateTriangle));
 
         const DuplicateReport& duplicates = facts_.duplicates;
-        addUnless(kDuplicateTriangles, duplicates.triangleCount > 0,
-                  counted(duplicates.triangleCount, "triangle lies", "triangles lie") +
-                      " on another" +
-                      (duplicates.triangles.empty()
-                           ? ""
-                           : "; first: triangle " + std::to_string(duplicates.triangles[0])));
+        add(kDuplicateTriangles, duplicates.triangleCount == 0, duplicatesText());
         addUnless(kDuplicateVertices, duplicates.vertexCount > 0,
                   counted(duplicates.vertexCount, "vertex lies", "vertices lie") +
                       " at the place of another" +

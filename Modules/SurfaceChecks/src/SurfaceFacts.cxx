@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshQuality/Winding.h"
@@ -13,6 +16,48 @@ std::int64_t countRepeatedIndices(const TriangleMesh& mesh) {
     return std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [](const Triangle& t) {
         return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
     });
+}
+
+/// Adds what lies on another inside each solid.
+DuplicateReport findDuplicatesOf(const TriangleMesh& mesh, std::span<const Solid> solids) {
+    const DuplicateOptions options;
+    DuplicateReport all;
+    const auto add = [&](auto& list, const auto& found, std::size_t first) {
+        for (const auto number : found) {
+            if (std::ssize(list) == options.maxExamples) return;
+            list.push_back(number + static_cast<std::int64_t>(first));
+        }
+    };
+    for (std::size_t n = 0; n < solids.size(); ++n) {
+        const DuplicateReport found = findDuplicates(solidAt(mesh, solids, n), options);
+        all.vertexCount += found.vertexCount;
+        all.triangleCount += found.triangleCount;
+        add(all.vertices, found.vertices, solids[n].firstPoint);
+        add(all.triangles, found.triangles, solids[n].firstTriangle);
+    }
+    return all;
+}
+
+/// The pieces that are the wrong way round in their solid, as numbers into topology.components.
+std::optional<std::vector<std::int64_t>> findInsideOutPieces(const TriangleMesh& mesh,
+                                                             const TopologyReport& topology,
+                                                             std::span<const Solid> solids) {
+    if (solids.empty()) return findInsideOutPieces(mesh, topology);
+    std::vector<std::int64_t> insideOut;
+    for (std::size_t n = 0; n < solids.size(); ++n) {
+        const TriangleMesh solid = solidAt(mesh, solids, n);
+        const TopologyReport alone = checkTopology(solid, {.maxExamplesPerDefect = 0});
+        const auto found = adaptiso::findInsideOutPieces(solid, alone);
+        if (!found) return std::nullopt;
+        for (const std::int64_t piece : *found) {
+            const auto first = alone.components[static_cast<std::size_t>(piece)].firstVertex +
+                               static_cast<VertexId>(solids[n].firstPoint);
+            const auto at = std::ranges::lower_bound(topology.components, first, {},
+                                                     &SurfaceComponent::firstVertex);
+            insideOut.push_back(at - topology.components.begin());
+        }
+    }
+    return insideOut;
 }
 
 }  // namespace
@@ -35,8 +80,9 @@ void replaceBadIndices(TriangleMesh& mesh) {
 }
 
 SurfaceFacts measureSurface(const TriangleMesh& given, const SizeLimits& sizeLimits,
-                            std::int64_t maxPairs) {
+                            std::int64_t maxPairs, std::span<const Solid> solids) {
     SurfaceFacts facts;
+    facts.solids = std::max<std::size_t>(1, solids.size());
     facts.topology = checkTopology(given);
     facts.repeatedIndexTriangles = countRepeatedIndices(given);
     TriangleMesh repaired;
@@ -52,14 +98,20 @@ SurfaceFacts measureSurface(const TriangleMesh& given, const SizeLimits& sizeLim
     if (facts.topology.isWatertight()) {
         facts.volumeMm3 = volume;
         if (facts.topology.count(TopologyDefect::NonFiniteVertex) == 0) {
-            facts.insideOut = findInsideOutPieces(mesh, facts.topology);
+            facts.insideOut = findInsideOutPieces(mesh, facts.topology, solids);
         }
     }
-    facts.duplicates = findDuplicates(mesh);
+    facts.duplicates = solids.empty() ? findDuplicates(mesh) : findDuplicatesOf(mesh, solids);
     if (facts.topology.count(TopologyDefect::BoundaryEdge) > 0 && !facts.isSoup()) {
         facts.holes = findHoles(mesh);
     }
-    facts.intersections = findSelfIntersections(mesh, {.maxPairs = maxPairs});
+    if (solids.empty()) {
+        facts.intersections = findSelfIntersections(mesh, {.maxPairs = maxPairs});
+    } else {
+        SharedWalls walls = findSharedWalls(mesh, solids, {.maxPairs = maxPairs});
+        facts.sharedWallTriangles = walls.triangleCount;
+        facts.intersections = std::move(walls.intersections);
+    }
     if (!facts.intersections.pairs.empty()) {
         const auto& [a, b, c] = mesh.triangles[facts.intersections.pairs.front()[0]];
         facts.firstCrossingMm = 1.0 / 3 * (mesh.points[a] + mesh.points[b] + mesh.points[c]);
@@ -70,9 +122,26 @@ SurfaceFacts measureSurface(const TriangleMesh& given, const SizeLimits& sizeLim
     return facts;
 }
 
-void measureWallsOf(const TriangleMesh& mesh, double limitMm, SurfaceFacts& facts) {
+void measureWallsOf(const TriangleMesh& mesh, double limitMm, SurfaceFacts& facts,
+                    std::span<const Solid> solids) {
     if (!facts.insideOut || !facts.insideOut->empty()) return;
-    facts.walls = measureWalls(mesh, limitMm);
+    if (solids.empty()) {
+        facts.walls = measureWalls(mesh, limitMm);
+        return;
+    }
+    WallReport all;
+    for (std::size_t n = 0; n < solids.size(); ++n) {
+        WallReport walls = measureWalls(solidAt(mesh, solids, n), limitMm);
+        const double thinMm2 = all.thinAreaMm2 + walls.thinAreaMm2,
+                     areaMm2 = all.areaMm2 + walls.areaMm2;
+        if (walls.hasWall() && (!all.hasWall() || walls.leastMm < all.leastMm)) {
+            all = walls;
+            all.triangle += static_cast<std::int64_t>(solids[n].firstTriangle);
+        }
+        all.thinAreaMm2 = thinMm2;
+        all.areaMm2 = areaMm2;
+    }
+    facts.walls = all;
 }
 
 std::string wallText(const WallReport& walls) {

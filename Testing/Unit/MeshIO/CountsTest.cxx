@@ -411,6 +411,7 @@ TEST(Counts, SolidsOfOneTextAreAllRead) {
     const MeshFile file = decoded(solid("a", 0) + "\n" + solid("b", 1), "a.stl");
     EXPECT_EQ(file.mesh.triangles.size(), 2U);
     EXPECT_EQ(file.mesh.points.size(), 6U);
+    EXPECT_EQ(file.solids, (std::vector<std::int64_t>{0, 1}));
     EXPECT_EQ(codesOf(file), Codes{"several-solids"});
     EXPECT_EQ(codesOf(decoded(solid("a", 0), "a.stl")), Codes{});
     std::string solids;

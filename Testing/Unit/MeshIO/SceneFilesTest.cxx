@@ -137,6 +137,7 @@ TEST(GlbFile, SeveralMeshesAreOneSurfaceAndOnlyTheSceneCounts) {
     EXPECT_EQ(file.mesh.points.size(), 8U);
     EXPECT_EQ(file.mesh.points.front(), (Vec3{0, 1000, 0}));
     EXPECT_EQ(file.mesh.triangles.back(), (Triangle{6, 5, 7}));
+    EXPECT_EQ(file.solids, (std::vector<std::int64_t>{0, 2}));
     ASSERT_NE(findCode(file, "several-solids"), nullptr);
     EXPECT_EQ(findCode(file, "several-solids")->text,
               "it holds 2 meshes, which were read as one surface");

@@ -17,6 +17,7 @@
 #include "adaptiso/MeshQuality/SurfaceDistance.h"
 #include "adaptiso/MeshQuality/Topology.h"
 #include "adaptiso/MeshQuality/Walls.h"
+#include "adaptiso/SurfaceChecks/Solids.h"
 
 namespace adaptiso {
 
@@ -27,6 +28,9 @@ struct SurfaceFacts {
                                               ///< twice
     DuplicateReport duplicates;
     SelfIntersections intersections;
+    std::size_t solids = 1;  ///< each was looked at alone
+    /// Triangles that lie on one of another solid: these walls are neither duplicates nor cross.
+    std::int64_t sharedWallTriangles = 0;
     std::vector<Hole> holes;  ///< of a soup none
     Vec3 firstCrossingMm;     ///< the middle of the first triangle that crosses another
     ShapeReport shape;
@@ -50,11 +54,16 @@ void replaceBadIndices(TriangleMesh& mesh);
 
 /// Triangles that name missing points are counted, and left out of all other measures.
 /// \param maxPairs  of triangles that cross, to list
+/// \param solids    as separateSolids() gives them: duplicates are sought in each, each is to face
+///                  outward by itself, and walls that two share may lie on each other. Empty: the
+///                  mesh is one surface
 SurfaceFacts measureSurface(const TriangleMesh& mesh, const SizeLimits& sizeLimits,
-                            std::int64_t maxPairs);
+                            std::int64_t maxPairs, std::span<const Solid> solids = {});
 
 /// Measures facts.walls, if the surface is closed, manifold, and faces outward.
-void measureWallsOf(const TriangleMesh& mesh, double limitMm, SurfaceFacts& facts);
+/// \param solids  as measureSurface() takes them: the walls of each
+void measureWallsOf(const TriangleMesh& mesh, double limitMm, SurfaceFacts& facts,
+                    std::span<const Solid> solids = {});
 
 /// The thinnest wall: "0.42 mm", "below 0.01 mm". \pre walls.hasWall()
 std::string wallText(const WallReport& walls);
