@@ -97,7 +97,8 @@ struct BatchRunning {
 /// reports each in a line, in their order. A run that fails or crashes does not affect others. Each
 /// leaves its record, by which --skip-existing knows finished results and from which the page is
 /// made.
-/// \return a record of each
+/// \return a record of each; where a signal came that the caller's SignalsWait postpones, of those
+///         that had ended
 std::vector<RunRecord> runRuns(const BatchProgram& program, const std::vector<PlannedRun>& runs,
                                const BatchOptions& batch, const BatchRunning& running,
                                const CommonOptions& common);
@@ -126,6 +127,7 @@ void printTotals(const std::vector<RunRecord>& records, const std::string& thing
                  const std::filesystem::path& written, const std::vector<std::string>& toDo);
 
 /// The batch mode of a program: plans, runs, prints totals, writes page and JSON lines.
+/// A signal ends it when the results until then are written.
 /// \return kExitOk, or kExitCheckFailed if any input failed
 /// \throws UsageError    options that don't go together, an output that all runs would write
 /// \throws FileError     summary or report can't be written

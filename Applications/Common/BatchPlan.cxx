@@ -23,6 +23,7 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextCells.h"
 #include "adaptiso/Core/TextLines.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso {
 namespace {
@@ -226,7 +227,8 @@ std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchI
         }
         if (const auto [at, isNew] = names.emplace(item.folder / item.name, &run); !isNew) {
             refuse(item, at->second,
-                   "are named '" + item.name + "'; give them names of their own in a --list");
+                   "are named '" + item.name +
+                       "'; give a --list with a line each: the file, a tab and its name");
         }
         for (const fs::path& surface : run.surfaces) {
             if (const auto [at, isNew] = files.emplace(surface, &run); !isNew) {
@@ -292,11 +294,22 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
         }
         if (kind) requireKind(option, file, *kind);
     }
+    const detail::SignalsWait untilResultsAreWritten;
     std::string lines;
     running.jsonLines = &lines;
     const std::vector<RunRecord> records = runRuns(program, runs, batch, running, common);
     if (common.wantsJson() && !common.wantsJsonOnStdout()) writeWhole(common.json, lines);
     if (!batch.table.empty()) writeWhole(batch.table, batchTable(records));
+    if (detail::SignalsWait::hasCome()) {
+        printError(program.name,
+                   "interrupted after " + std::to_string(records.size()) + " of " +
+                       counted(std::ssize(runs), "input") +
+                       (program.keepsRecords || !running.folder.empty()
+                            ? "; the same command with --skip-existing does the others"
+                            : ""));
+        flushResults();
+        return kExitCheckFailed;  // as the signal ends the program
+    }
     const bool haveAllPassed = std::ranges::all_of(records, std::mem_fn(&RunRecord::hasPassed));
     if (!common.isQuiet && !common.wantsJsonOnStdout()) {
         std::vector<std::string> toDo;

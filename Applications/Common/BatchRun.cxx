@@ -16,6 +16,7 @@
 #include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso {
 namespace {
@@ -124,7 +125,9 @@ public:
             throw;
         }
         std::vector<RunRecord> records;
-        for (auto& record : ended_) records.push_back(std::move(*record));
+        for (auto& record : ended_) {
+            if (record) records.push_back(std::move(*record));
+        }
         return records;
     }
 
@@ -150,6 +153,7 @@ private:
             [&](std::size_t n) { return start(waiting[n]); },
             [&](std::size_t n, const ChildResult& result) { finish(waiting[n], result); },
             program_.executable);
+        printNext();
         progress_.clear();
         writePage();
     }
@@ -320,8 +324,9 @@ private:
     /// Reports the runs whose turn has come: in the order of the inputs, whichever ended first.
     void printNext() {
         progress_.clear();
-        for (; printed_ < runs_.size() && ended_[printed_]; ++printed_) {
-            print(runs_[printed_].item, *ended_[printed_]);
+        const bool isLast = detail::SignalsWait::hasCome();
+        for (; printed_ < runs_.size() && (ended_[printed_] || isLast); ++printed_) {
+            if (ended_[printed_]) print(runs_[printed_].item, *ended_[printed_]);
         }
         if (printed_ < runs_.size()) {
             progress_.show(std::to_string(printed_) + " of " + std::to_string(runs_.size()) +

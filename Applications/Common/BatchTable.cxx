@@ -44,6 +44,7 @@ std::string batchTable(const std::vector<RunRecord>& records) {
             add("run", record.name);  // "name" is a region's
             add("input", joined(record.files));
             add("state", record.hasPassed() ? "done" : "failed");
+            add("exitCode", record.signal == 0 ? std::to_string(record.exitCode) : "");
             add("result", record.error.empty() ? record.says : record.error);
             add("warnings",
                 joined(
@@ -55,6 +56,10 @@ std::string batchTable(const std::vector<RunRecord>& records) {
             if (n >= surfaces.size() || !surfaces[n].is_object()) continue;
             for (const auto& [key, value] : surfaces[n].items()) {
                 if (value.is_primitive()) add(key, cellText(value));
+                if (!value.is_object()) continue;
+                for (const auto& [part, figure] : value.items()) {
+                    if (figure.is_primitive()) add(key + "." + part, cellText(figure));
+                }
             }
         }
     }

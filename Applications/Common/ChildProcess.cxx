@@ -150,6 +150,21 @@ bool hasEnded(Child& child) {
     return true;
 }
 
+void endAll(std::list<Child>& children) {
+    constexpr std::chrono::seconds kLongest(5);  // to remove temporaries
+    const auto begin = Clock::now();
+    for (const Child& child : children) kill(child.process, SIGTERM);
+    bool isKilled = false;
+    while (!children.empty()) {
+        if (!isKilled && Clock::now() - begin > kLongest) {
+            for (const Child& child : children) kill(child.process, SIGKILL);
+            isKilled = true;
+        }
+        waitForAny(children);
+        std::erase_if(children, hasEnded);
+    }
+}
+
 }  // namespace
 
 void runChildren(std::size_t count, int jobs,
@@ -181,6 +196,7 @@ void runChildren(std::size_t count, int jobs,
         }
         if (children.empty()) break;
         waitForAny(children);
+        if (detail::SignalsWait::hasCome()) return endAll(children);
         for (auto child = children.begin(); child != children.end();) {
             if (!hasEnded(*child)) {
                 ++child;

@@ -7,6 +7,8 @@
 #include "Common/Warnings.h"
 #include "Dataset.h"
 #include "Jobs.h"
+#include "adaptiso/Core/Phrases.h"
+#include "adaptiso/Files/AtomicOutput.h"
 
 namespace adaptiso::bids {
 namespace {
@@ -30,10 +32,14 @@ public:
         const std::vector<Job> jobs = findJobs(options_, chosen_.folders);
         makeFolders(options_.output);
         for (const auto& [subject, reason] : chosen_.faulty) printFailed(subject, reason);
+        const detail::SignalsWait untilResultsAreWritten;
         for (const Job& job : jobs) run(job);
         if (options_.makes("check")) run(checkJob(options_, jobs.front()));
         if (writesJson) writeWhole(common.json, lines_);
-        if (!common.isQuiet && !common.wantsJsonOnStdout()) {
+        if (detail::SignalsWait::hasCome()) {
+            printError(kProgram, "interrupted after " + counted(std::ssize(records_), "run") +
+                                     "; the same command goes on");
+        } else if (!common.isQuiet && !common.wantsJsonOnStdout()) {
             printTotals(records_, "run", options_.output,
                         {"the level group, with the same options, for quality.tsv and a page"});
         }
@@ -62,6 +68,7 @@ private:
     }
 
     void run(const Job& job) {
+        if (detail::SignalsWait::hasCome()) return;
         for (const std::string& subject : job.without) {
             printFailed(subject, job.product + ": no " + job.needs);
         }

@@ -240,8 +240,8 @@ class Ends(BatchTest):
         write_nifti(self.path("long.nii"), noise(96))  # minutes of triangles, if it were let
 
     def start(self, *inputs):
-        return subprocess.Popen([MESH, *inputs, "--iso", "128", "--output-dir", "out"],
-                                cwd=self.folder, text=True, stdout=subprocess.PIPE,
+        return subprocess.Popen([MESH, *inputs, "--iso", "128", "--output-dir", "out", "--csv", "t.csv",
+                                 "--json", "lines.json"], cwd=self.folder, text=True, start_new_session=True, stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE)
 
     def child_of(self, process):
@@ -284,17 +284,28 @@ class Ends(BatchTest):
                    preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN))
 
     def test_an_interrupted_batch_ends_its_runs_and_goes_on_later(self):
-        for ending in (signal.SIGTERM, signal.SIGKILL):
+        for ending in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL):
             with self.subTest(ending):
                 process = self.start("a.nii", "long.nii", "b.nii")
                 child = self.child_of(process)
-                process.send_signal(ending)
-                process.communicate(timeout=300)
+                if ending == signal.SIGINT:
+                    os.killpg(process.pid, ending)  # as a terminal does
+                else:
+                    process.send_signal(ending)
+                _, errors = process.communicate(timeout=300)
                 self.assertEqual(process.returncode, -ending)
                 self.wait_for_end(child)
                 self.assertEqual(self.temporaries(), [])
                 self.assertFalse(self.path("out/long-iso128.vtp").exists())
                 self.assertFalse(self.path("out/b-iso128.vtp").exists())
+                if ending != signal.SIGKILL:
+                    with open(self.path("t.csv"), newline="") as file:
+                        self.assertEqual([(row["run"], row["exitCode"]) for row in csv.DictReader(file)],
+                                         [("a", "0")])
+                    self.assertEqual([json.loads(line)["name"] for line in
+                                      self.path("lines.json").read_text().splitlines()], ["a"])
+                    self.assertRegex(errors, r"^adaptiso-mesh: interrupted after 1 of 3 inputs; [^\n]*"
+                                                     r"--skip-existing[^\n]*\n$")
         write_nifti(self.path("long.nii"), ball(24, 8))
         lines = self.lines(OK, "a.nii", "long.nii", "b.nii", "--iso", 128, "--output-dir", "out",
                            "--skip-existing")

@@ -311,6 +311,10 @@ SignalsWait::~SignalsWait() {
     if (const int signal = postponedSignal.exchange(0); signal != 0) raise(signal);
 }
 
+bool SignalsWait::hasCome() {
+    return postponedSignal.load() != 0;
+}
+
 fs::path folderOf(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }

@@ -149,6 +149,9 @@ struct SignalsWait {
     SignalsWait();
     ~SignalsWait();
     SignalsWait(const SignalsWait&) = delete;
+
+    /// A signal has come that will end the program when the last of these goes.
+    static bool hasCome();
 };
 
 /// The folder that holds `path`; "." for a bare name.
