@@ -197,8 +197,14 @@ private:
              baseName(surface.file)});
     }
 
-    /// Limits that fit no surface of this size.
+    /// A size that may be of another unit, and limits that fit no surface of this size.
     void warnOfSize(const SurfaceRun& surface) {
+        const auto size = std::ranges::find(surface.checks, "plausibleSize", &Check::key);
+        const bool isDoubtful = size != surface.checks.end() &&
+                                size->outcome == Outcome::Undecided && surface.facts.size.guess;
+        if (isDoubtful) {
+            run_.warnings.push_back({"size-doubtful", size->finding, baseName(surface.file)});
+        }
         const double diagonalMm = norm(surface.facts.size.extentMm);
         for (const auto& [name, limit] :
              {std::pair{"--min-gap", options_.minGapMm}, std::pair{"--max-off", options_.maxOffMm},

@@ -129,6 +129,11 @@ class ManyInputs(BatchTest):
         self.batch(OK, "a.nii", "--iso", 100, "-o", "{name}.stl")
         self.assertTrue(self.path("a.stl").exists())
 
+    def test_a_folder_that_is_not_there_is_told_once(self):
+        for more, folder in (((), "sub"), (("--output-dir", "many"), "many/sub")):
+            self.assert_fails(BAD_INPUT, f"--output sub/{{name}}.ply: there is no folder {folder}; make it",
+                              "a.nii", "b.nii", "--iso", 100, "-o", "sub/{name}.ply", *more)
+
     def test_inputs_of_one_name_are_refused(self):
         self.path("x").mkdir()
         write_nifti(self.path("x/a.nii"), ball(8, 3))

@@ -193,10 +193,15 @@ class Profiles(CheckTest):
         self.assertEqual(self.check(NAMES[0])["options"]["profile"], "print")
         self.assertEqual(self.check("--nested", *NAMES)["options"]["profile"], "bem")
 
-    def test_a_surface_of_a_micro_ct_fails_as_a_head_alone(self):
-        for profile, verdict in (("print", (True, "undecided")), ("bem", (False, "failed"))):
-            said = self.surface(icosphere(0.015), "--profile", profile)  # mm
+    def test_a_surface_of_a_micro_ct_fails_as_a_head_or_a_print_alone(self):
+        for profile, verdict in (((), (True, "undecided")), (("--profile", "print"), (False, "failed")),
+                                 (("--profile", "bem"), (False, "failed"))):
+            said = self.surface(icosphere(0.015), *profile)  # mm
             self.assertEqual((said["passed"], outcome(said, "plausibleSize")), verdict)
+        self.write("small.off", icosphere(0.08))  # a head in metres
+        notes = self.check("small.off", "--strict")["warnings"]
+        self.assertEqual([note["code"] for note in notes], ["size-doubtful"])
+        self.assertIn("or in metres", notes[0]["text"])
 
     def test_handle_may_be_printed_and_a_hole_viewed(self):
         said = self.surface(with_handle(icosphere(80)))

@@ -6,11 +6,12 @@ import math
 import random
 import re
 import struct
+import subprocess
 import zipfile
 import zlib
 
 from labelsSupport import LabelsTest, label_map, three_boxes
-from support import (BAD_INPUT, CHECK_FAILED, OK, USAGE, Image, write_4d_nifti, write_metaimage,
+from support import (BAD_INPUT, BIN, CHECK_FAILED, OK, USAGE, Image, write_4d_nifti, write_metaimage,
                      main, write_nifti, write_nrrd)
 
 
@@ -111,6 +112,12 @@ class OutputTest(LabelsTest):
         self.assertIn("body.glb: 3 regions of boxes.nii, GLB (glTF 2.0), RAS mm",
                       self.labels("boxes.nii", "-o", "body.glb").stdout)
 
+        for name in ("body.glb", "body.3mf"):  # their shared walls are no faults
+            checked = json.loads(subprocess.run([BIN / "adaptiso-check", name, "--profile", "print", "--json", "-"],
+                                                cwd=self.folder, capture_output=True, check=True).stdout)
+            self.assertEqual(checked["surfaces"][0]["solids"], 3)
+            self.assertGreater(checked["surfaces"][0]["sharedWallTriangles"], 0)
+            self.assertEqual([warning["code"] for warning in checked["warnings"]], ["several-solids"])
         glb = self.files()["body.glb"]
         length = struct.unpack_from("<I", glb, 12)[0]
         scene, bin_chunk = json.loads(glb[20:20 + length]), glb[28 + length:]

@@ -78,6 +78,7 @@ constexpr WarningCode kCodes[] = {
     {"series-left-aside", "images of other series in the folder were left aside"},
     {"several-solids", "a file holds several solids or meshes, read as one surface", true},
     {"sides-doubtful", "names of electrodes, or nasion and ears, contradict the sides of the head"},
+    {"size-doubtful", "a surface is smaller than 1 mm; its unit may not be mm", true},
     {"skull-closed", "a hole in the segmentation's skull is closed in the head model"},
     {"skull-thickened", "much of the head model's skull is thicker than the segmentation's"},
     {"skull-unseen", "the skull shows on too few of the rays to the scalp"},

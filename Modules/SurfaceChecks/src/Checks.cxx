@@ -96,7 +96,8 @@ constexpr CheckRule kSize{
     "plausibleSize",
     "size plausible in mm",
     "bem: every side of the bounding box is 50 mm or more (as in MNE), none above 500 mm; else: "
-    "the longest side is 1 to 2000 mm; a shorter one, as of a micro-CT, is undecided",
+    "the longest side is 1 to 2000 mm; a shorter one, as of a micro-CT, is undecided, and fails "
+    "where `--profile print` is given",
     true,
     true,
     false};
@@ -426,7 +427,10 @@ private:
         };
         std::string finding =
             mm(size.extentMm.x) + " x " + mm(size.extentMm.y) + " x " + mm(size.extentMm.z) + " mm";
-        if (size.verdict == SizeVerdict::TooSmall && rules_.profileInUse() != Profile::Bem) {
+        // what is said to be for a printer is no micro-CT
+        const bool mayBeSmall =
+            rules_.profileInUse() != Profile::Bem && rules_.profile != Profile::Print;
+        if (size.verdict == SizeVerdict::TooSmall && mayBeSmall) {
             const std::string unit =
                 size.guess ? ", or in " + std::string(toString(*size.guess)) : std::string();
             return add(kSize, Outcome::Undecided, finding + ": of a micro-CT" + unit + "?");
