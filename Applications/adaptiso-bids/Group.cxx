@@ -548,7 +548,7 @@ Json rowJson(const QualityRow& row) {
 int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     const CommonOptions& common = options.common;
     const bool writesJson = common.wantsJson() && !common.wantsJsonOnStdout();
-    if (writesJson) checkOutput(common.json);
+    checkReportFile(common, options.dataset);
     std::error_code error;
     if (!fs::is_directory(options.output, error)) {
         throw InvalidInput(options.output.string() +

@@ -28,7 +28,7 @@ public:
     int run() {
         const CommonOptions& common = options_.common;
         const bool writesJson = common.wantsJson() && !common.wantsJsonOnStdout();
-        if (writesJson) checkOutput(common.json);
+        checkReportFile(common, options_.dataset);
         const std::vector<Job> jobs = findJobs(options_, chosen_.folders);
         makeFolders(options_.output);
         for (const auto& [subject, reason] : chosen_.faulty) printFailed(subject, reason);

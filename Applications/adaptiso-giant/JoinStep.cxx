@@ -247,7 +247,21 @@ Report giantReport(const GiantPlan& plan, const GiantSurface& surface, const Jso
     return report;
 }
 
+bool hasPieces(const GiantOptions& options) {
+    return options.output.extension() == ".pvtp";
+}
+
 }  // namespace
+
+void checkJoinOutputs(const GiantOptions& options, const fs::path& input) {
+    OutputPlan planned({&input, 1});
+    if (!options.output.empty()) planned.add("--output", options.output);
+    if (!options.preview.empty()) planned.add("--preview", options.preview);
+    planned.check(options.common, options.report);
+    if (hasPieces(options)) {
+        AtomicFolder::check(piecesFolder(options.output), OwnNames(isPieceName));
+    }
+}
 
 int runJoinStep(const GiantOptions& options, const std::string& key) {
     const ThreadLimit threads(options.common);
@@ -257,12 +271,8 @@ int runJoinStep(const GiantOptions& options, const std::string& key) {
                            ": another plan was made there meanwhile; give each surface a folder of "
                            "its own");
     }
-    const bool isPieces = options.output.extension() == ".pvtp";
-    OutputPlan planned({&plan.input, 1});
-    if (!options.output.empty()) planned.add("--output", options.output);
-    if (!options.preview.empty()) planned.add("--preview", options.preview);
-    planned.check(options.common, options.report);
-    if (isPieces) AtomicFolder::check(piecesFolder(options.output), OwnNames(isPieceName));
+    const bool isPieces = hasPieces(options);
+    checkJoinOutputs(options, plan.input);
     ProgressLine progress(options.common.isQuiet);
     progress.show("join");
     const PieceJoiner joiner(options.work, plan);

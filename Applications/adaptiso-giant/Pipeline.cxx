@@ -173,6 +173,7 @@ int runGiant(const GiantOptions& options) {
 }
 
 int runAllSteps(const GiantOptions& options) {
+    checkJoinOutputs(options, options.input);
     GiantOptions quiet = options;
     quiet.common.isQuiet = true;
     quiet.common.json.clear();

@@ -54,6 +54,9 @@ private:
     std::map<std::array<std::int64_t, 3>, std::string> known_;  ///< by z, y, x
 };
 
+/// Refuses files to write that can't be, as before long work. \throws UsageError, FileError
+void checkJoinOutputs(const GiantOptions& options, const std::filesystem::path& input);
+
 /// \throws UsageError, InvalidInput, FileError, InternalError, each
 int runPlanStep(const GiantOptions& options);
 int runTileStep(const GiantOptions& options);

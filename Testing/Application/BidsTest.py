@@ -183,6 +183,7 @@ class Participants(BidsTest):
         self.assertEqual(kept, {"sub-01_T1w.nii", "cap.tsv"})
 
     def test_wrong_usage(self):
+        self.path("notes.txt").write_text("mine")
         for code, pattern, arguments in (
                 (USAGE, "LEVEL", ("both",)),
                 (USAGE, "--surfaces lagrest: adaptiso-mesh has no such option; did you mean largest",
@@ -196,6 +197,8 @@ class Participants(BidsTest):
                 (USAGE, "--check: needs --surfaces", ("participant", "--bem", "--check")),
                 (USAGE, "max-error", ("participant", "--participant-label", "01", "--surfaces",
                                       "iso=1,max-error=-3")),
+                (BAD_INPUT, "--json notes.txt: exists and is no JSON report",
+                 ("participant", "--surfaces", "iso=1", "--json", "notes.txt")),
                 (BAD_INPUT, "there is no folder sub-99", ("participant", "--participant-label", "99")),
                 (BAD_INPUT, "out: is not there; run the participant level first", ("group",))):
             with self.subTest(pattern):

@@ -90,6 +90,8 @@ WRONG = [
     (BAD_INPUT, "--log ball.nii: exists and is no log; name a new file", MESH, (*BALL, "--log", "ball.nii")),
     # what a shell makes of --json *.off
     (BAD_INPUT, "--json a.off: exists and is no JSON report; name a new file", MESH, (*BALL, "--json", "a.off")),
+    (BAD_INPUT, "--json a.off: exists and is no JSON report; name a new file", "adaptiso-giant",
+     ("run", "w", "--input", "ball.nii", "--iso", "100", "--json", "a.off")),
     (BAD_INPUT, "--report a.off: exists and is no HTML page; name a new file", MESH, (*BALL, "--report", "a.off")),
     (BAD_INPUT, "--csv a.off: exists and is no table of runs; name a new file", MESH, ("ball.nii", "flat.nii", "--iso", "100", "--csv", "a.off")),
     (USAGE, "--eeg: there is no such option; three layers, as EEG needs, are the default", BEM, ("--t1", "ball.nii", "-o", "m", "--eeg")),
