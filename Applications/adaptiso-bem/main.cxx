@@ -68,8 +68,8 @@ void addTissue(TissueLabels& tissues, const std::string& text) {
     const auto refuse = [&] {
         throw UsageError(
             "--tissue " + text +
-            ": must be white, brain, csf, skull or scalp, '=', and labels with commas between "
-            "them: brain=1,2,3");
+            ": must be white, brain, csf, skull or scalp, '=', and labels or ranges of them with "
+            "commas between: brain=1,2,5-9");
     };
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
@@ -81,11 +81,19 @@ void addTissue(TissueLabels& tissues, const std::string& text) {
                                                               : nullptr;
     if (equals == std::string::npos || list == nullptr) return refuse();
     for (const std::string& part : parts(text.substr(equals + 1), ',')) {
-        std::int64_t label = 0;
+        constexpr std::int64_t kMostLabels = 100'000;  // more than any atlas has
+        std::int64_t first = 0;
         const char* const last = part.data() + part.size();
-        const auto [end, error] = std::from_chars(part.data(), last, label);
-        if (error != std::errc{} || end != last) return refuse();
-        list->push_back(label);
+        std::from_chars_result read = std::from_chars(part.data(), last, first);
+        std::int64_t final = first;
+        if (read.ec == std::errc{} && read.ptr != last && *read.ptr == '-') {
+            read = std::from_chars(read.ptr + 1, last, final);
+        }
+        if (read.ec != std::errc{} || read.ptr != last || final < first ||
+            final - first > kMostLabels) {
+            return refuse();
+        }
+        for (std::int64_t label = first; label <= final; ++label) list->push_back(label);
     }
 }
 
@@ -129,7 +137,7 @@ void declareInput(CLI::App& app, BemOptions& options) {
         [&options](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) addTissue(options.tissues, text);
         },
-        "Labels of a tissue: brain=1,2,3 (CSF and white matter included, or named apart: white=1 "
+        "Labels of a tissue: brain=1,2,5-9 (CSF and white matter included, or named apart: white=1 "
         "brain=2 csf=3), skull=4, scalp=5; one --tissue each");
     input.value(
         "--preset", choiceName(kPresets),

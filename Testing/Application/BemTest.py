@@ -548,7 +548,8 @@ class BadInput(BemTest):
             "--labels needs --preset": ("--labels", "a.nii", "-o", "m"),
             "skull=... and scalp=": ("--labels", "a.nii", "--tissue", "brain=1", "-o", "m"),
             "must be white, brain, csf, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
-            "labels with commas": ("--labels", "a.nii", "--tissue", "brain=1,x", "-o", "m"),
+            "labels or ranges": ("--labels", "a.nii", "--tissue", "brain=1,x", "-o", "m"),
+            "ranges of them": ("--labels", "a.nii", "--tissue", "brain=3-1", "-o", "m"),
             "--preset needs --labels": ("--t1", "a.nii", "--preset", "charm", "-o", "m"),
             "--surfaces needs 3 files": ("--surfaces", "a.stl", "-o", "m"),
             "--surfaces needs 1 files": ("--surfaces", "a.stl", "b.stl", "--meg", "-o", "m"),
@@ -597,7 +598,9 @@ class BadInput(BemTest):
         self.fails(BAD_INPUT, "there are 1 maps", "--probabilities", "flat.nii", "-o", "m")
         self.fails(BAD_INPUT, r"missing\.nii", "--t1", "missing.nii", "-o", "m")
         self.fails(BAD_INPUT, r"^adaptiso-bem: --labels seg\.nii: label 2 is named twice",
-                   *self.labels(), "--tissue", "brain=2", "-o", "m")
+                   *self.labels(), "--tissue", "brain=2-2", "-o", "m")
+        self.fails(BAD_INPUT, r"^adaptiso-bem: --t1 seg\.nii: holds 4 labels and no grey values; give it as the "
+                              r"label map \(--labels\)", "--t1", "seg.nii", "-o", "m")
         labels = self.labels()
         scaled = bytearray(self.path("seg.nii").read_bytes())
         scaled[112:120] = struct.pack("<ff", 0.75, 0)  # scl_slope, scl_inter

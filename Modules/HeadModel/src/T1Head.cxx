@@ -11,6 +11,7 @@
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/HeadModel/SourceError.h"
+#include "adaptiso/Preprocessing/LabelValues.h"
 
 namespace adaptiso::headmodel {
 
@@ -253,6 +254,11 @@ Mask lesionOf(const VolumeView& lesion, const Head& head) {
 
 Head findHead(const VolumeView& t1, const BrainSources& sources, const BoundaryOptions& options,
               bool isFramed) {
+    if (const auto labels = findLabelValues(t1)) {
+        throw InvalidInput("holds " + std::to_string(labels->count) +
+                           " labels and no grey values; give it as the label map (--labels), or "
+                           "the scan that it was made of");
+    }
     FloatImage image = toFloat(t1, std::numeric_limits<float>::quiet_NaN());
     clipSpikes(image.values);
     backgroundToAir(image);
