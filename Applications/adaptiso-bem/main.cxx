@@ -1,5 +1,3 @@
-#include <malloc.h>
-
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -478,10 +476,6 @@ void declareBemOptions(CLI::App& app, BemOptions& options) {
 }  // namespace adaptiso::bem
 
 int main(int argc, char** argv) {
-    // Solids are blocks of tens of MB: mapped each, they go back to the system when freed. glibc
-    // would raise its threshold to their size and keep them: 10 % more memory at most.
-    constexpr int kMappedBytes = 4 << 20;
-    mallopt(M_MMAP_THRESHOLD, kMappedBytes);
     return adaptiso::runApp(argc, argv, adaptiso::bem::bemProgram(),
                             adaptiso::bem::declareBemOptions, adaptiso::bem::runBem);
 }

@@ -1,6 +1,7 @@
 #include "EditMesh.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -22,8 +23,8 @@ EditMesh::EditMesh(const TriangleMesh& mesh)
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         for (int side = 0; side < 3; ++side) {
             const auto h = static_cast<HalfEdge>(3 * t + side);
-            from_[h] = mesh.triangles[t][side];
-            out_[from_[h]] = h;
+            from_[h] = static_cast<Number>(mesh.triangles[t][side]);
+            out_[from_[h]] = static_cast<Number>(h);
         }
     }
     for (HalfEdge h = 0; h < halfEdgeSlots(); ++h) {
@@ -88,13 +89,13 @@ std::vector<VertexId> EditMesh::compact() {
     EditMesh result;
     result.vertexCount_ = vertexCount_;
     for (const VertexId v : former) {
-        result.out_.push_back(isVertexAlive(v) ? newHalfEdge(out_[v]) : -1);
+        result.out_.push_back(static_cast<Number>(isVertexAlive(v) ? newHalfEdge(out_[v]) : -1));
         result.points_.push_back(points_[v]);
     }
     for (const HalfEdge first : formerFirst) {
         for (HalfEdge h = first; h < first + 3; ++h) {
-            result.from_.push_back(isAlive(h) ? newVertex[from_[h]] : -1);
-            result.twin_.push_back(isAlive(h) ? newHalfEdge(twin_[h]) : -1);
+            result.from_.push_back(static_cast<Number>(isAlive(h) ? newVertex[from_[h]] : -1));
+            result.twin_.push_back(static_cast<Number>(isAlive(h) ? newHalfEdge(twin_[h]) : -1));
         }
     }
     for (const VertexId v : freeVertices_) result.freeVertices_.push_back(newVertex[v]);
@@ -112,12 +113,11 @@ std::int64_t EditMesh::valence(VertexId v) const {
 }
 
 void EditMesh::setTriangle(HalfEdge first, VertexId a, VertexId b, VertexId c) {
-    from_[first] = a;
-    from_[first + 1] = b;
-    from_[first + 2] = c;
-    out_[a] = first;
-    out_[b] = first + 1;
-    out_[c] = first + 2;
+    const std::array corners{a, b, c};
+    for (HalfEdge h = first; h < first + 3; ++h) {
+        from_[h] = static_cast<Number>(corners[h - first]);
+        out_[corners[h - first]] = static_cast<Number>(h);
+    }
 }
 
 EditMesh::HalfEdge EditMesh::newTriangle() {
@@ -201,11 +201,11 @@ void EditMesh::collapse(HalfEdge h) {
     const VertexId a = from(h), b = to(h);
     const HalfEdge left = h - h % 3, right = g - g % 3;
     const HalfEdge bc = twin(next(h)), ca = twin(prev(h)), ad = twin(next(g)), db = twin(prev(g));
-    forEachOut(a, [&](HalfEdge out) { from_[out] = b; });
+    forEachOut(a, [&](HalfEdge out) { from_[out] = static_cast<Number>(b); });
     join(bc, ca);
     join(ad, db);
     // The twins outside the two triangles live on and leave b, c, d.
-    for (const HalfEdge e : {bc, ca, ad, db}) out_[from_[e]] = e;
+    for (const HalfEdge e : {bc, ca, ad, db}) out_[from_[e]] = static_cast<Number>(e);
     out_[a] = -1;
     freeVertices_.push_back(a);
     for (const HalfEdge first : {left, right}) {

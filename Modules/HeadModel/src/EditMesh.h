@@ -18,7 +18,8 @@ public:
     using HalfEdge = std::int64_t;
 
     /// Takes points and triangles as they are; vertex numbers stay, unused vertices are dead.
-    /// \pre closed, oriented, manifold; no triangle names a vertex twice
+    /// \pre closed, oriented, manifold; no triangle names a vertex twice; half-edges, also of what
+    /// splits add, are fewer than 2^31
     explicit EditMesh(const TriangleMesh& mesh);
 
     /// Without dead vertices and triangles, in the order of their numbers; no normals.
@@ -83,15 +84,17 @@ public:
 private:
     EditMesh() = default;
     void join(HalfEdge a, HalfEdge b) {
-        twin_[a] = b;
-        twin_[b] = a;
+        twin_[a] = static_cast<Number>(b);
+        twin_[b] = static_cast<Number>(a);
     }
     void setTriangle(HalfEdge first, VertexId a, VertexId b, VertexId c);
     HalfEdge newTriangle();
 
-    std::vector<VertexId> from_;  ///< -1: dead
-    std::vector<HalfEdge> twin_;
-    std::vector<HalfEdge> out_;  ///< a half-edge that leaves the vertex; -1: dead
+    /// As stored: half the memory that walks go through.
+    using Number = std::int32_t;
+    std::vector<Number> from_;  ///< -1: dead
+    std::vector<Number> twin_;
+    std::vector<Number> out_;  ///< a half-edge that leaves the vertex; -1: dead
     std::vector<Vec3> points_;
     std::vector<HalfEdge> freeTriangles_;  ///< their first half-edges
     std::vector<VertexId> freeVertices_;

@@ -119,12 +119,12 @@ void reachVertexCount(Remesher& remesher, std::int64_t vertices) {
     }
 }
 
-/// As many rounds up to 20,000 vertices, then fewer, a fifth of them at least: each takes time by
-/// the vertices, and irregular ones matter less the shorter edges are.
+/// As many rounds up to 20,000 vertices, then fewer by their square, a tenth of them at least: each
+/// takes time by the vertices, and irregular ones matter less the shorter edges are.
 int roundsFor(int rounds, std::int64_t vertices) {
-    constexpr std::int64_t kMany = 20'000;
-    if (vertices <= kMany) return rounds;
-    return std::max(rounds / 5, static_cast<int>(rounds * kMany / vertices));
+    constexpr double kMany = 20'000;
+    const double share = std::min(1.0, kMany / static_cast<double>(vertices));
+    return std::max(rounds / 10, static_cast<int>(rounds * share * share));
 }
 
 /// Puts vertices where edges are longest and takes as many where they are shortest, ever fewer of

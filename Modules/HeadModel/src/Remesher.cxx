@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "adaptiso/Core/Parallel.h"
 
@@ -28,6 +29,11 @@ double angleAt(const Vec3& apex, const Vec3& a, const Vec3& b) {
 double cosBetween(const Vec3& a, const Vec3& b) {
     const double lengths = std::sqrt(squaredNorm(a) * squaredNorm(b));
     return lengths > 0 ? dot(a, b) / lengths : 1;
+}
+
+/// Along an edge, between the normals at its ends.
+bool turnsAtCrest(const Vec3& a, const Vec3& b) {
+    return dot(a, b) < kCrestCos;
 }
 
 }  // namespace
@@ -85,6 +91,11 @@ double Remesher::uprightness(HalfEdge h) const {
                                                normals_[mesh_.opposite(h)]);
 }
 
+bool Remesher::staysUpright(HalfEdge h, const Vec3& area, const Vec3& normals) const {
+    const double then = cosBetween(area, normals);
+    return then >= kUpright || then >= uprightness(h);
+}
+
 Landing Remesher::midpoint(HalfEdge h) const {
     return target_.project(0.5 * (mesh_.point(mesh_.from(h)) + mesh_.point(mesh_.to(h))),
                            triangles_[mesh_.from(h)]);
@@ -119,7 +130,7 @@ bool Remesher::tryCollapse(HalfEdge h, const Landing& landing, double longestAll
             const Vec3 area = areaVector2(landing.pointMm, mesh_.point(p), mesh_.point(q));
             const double longest = longestAllowed * scale_ / 2 * (landing.sizeMm + sizesMm_[p]);
             isGood = squaredNorm(mesh_.point(p) - landing.pointMm) <= longest * longest &&
-                     cosBetween(area, normals) >= std::min(kUpright, uprightness(out));
+                     staysUpright(out, area, normals);
         });
     };
     inspect(a, b);
@@ -229,19 +240,22 @@ void Remesher::flipToDelaunay() {
     }
 }
 
-Vec3 Remesher::relaxed(VertexId v) const {
+std::optional<Vec3> Remesher::relaxed(VertexId v) const {
     // The centre of mass of the triangles round v, as cells of a centroidal tessellation have
     // theirs [Du1999]. Triangles grow with size^2 and lie off by size, so size^-3 is what leaves
     // a well graded mesh where it is.
     Vec3 sum;
     double weights = 0;
+    bool isCrest = false;
     mesh_.forEachOut(v, [&](HalfEdge h) {
         const VertexId p = mesh_.to(h), q = mesh_.opposite(h);
+        isCrest = isCrest || turnsAtCrest(normals_[v], normals_[p]);
         const double size = sizesMm_[v] + sizesMm_[p] + sizesMm_[q];
         const double weight = norm(mesh_.areaVector(h)) / (size * size * size);
         sum += weight / 3 * (mesh_.point(v) + mesh_.point(p) + mesh_.point(q));
         weights += weight;
     });
+    if (isCrest) return std::nullopt;
     if (!(weights > 0)) return mesh_.point(v);
     const Vec3 move = 1 / weights * sum - mesh_.point(v);
     return mesh_.point(v) + (move - dot(move, normals_[v]) * normals_[v]);
@@ -250,7 +264,7 @@ Vec3 Remesher::relaxed(VertexId v) const {
 bool Remesher::isOnCrest(VertexId v) const {
     bool isCrest = false;
     mesh_.forEachOut(v, [&](HalfEdge h) {
-        isCrest = isCrest || dot(normals_[v], normals_[mesh_.to(h)]) < kCrestCos;
+        isCrest = isCrest || turnsAtCrest(normals_[v], normals_[mesh_.to(h)]);
     });
     return isCrest;
 }
@@ -260,8 +274,7 @@ bool Remesher::tryMove(VertexId v, const Landing& landing) {
     mesh_.forEachOut(v, [&](HalfEdge h) {
         const VertexId p = mesh_.to(h), q = mesh_.opposite(h);
         const Vec3 area = areaVector2(landing.pointMm, mesh_.point(p), mesh_.point(q));
-        isGood = isGood && cosBetween(area, landing.normal + normals_[p] + normals_[q]) >=
-                               std::min(kUpright, uprightness(h));
+        isGood = isGood && staysUpright(h, area, landing.normal + normals_[p] + normals_[q]);
     });
     if (isGood) settle(v, landing);
     return isGood;
@@ -283,11 +296,9 @@ void Remesher::relax(int rounds) {
     for (int round = 0; round < rounds; ++round) {
         parallelForPieces(slots, kSlotGrain, [&](std::int64_t begin, std::int64_t end) {
             for (VertexId v = begin; v < end; ++v) {
-                if (mesh_.isVertexAlive(v) && !isOnCrest(v)) {
-                    landings[v] = moved(v, relaxed(v));
-                } else {
-                    landings[v].triangle = -1;
-                }
+                landings[v].triangle = -1;
+                if (!mesh_.isVertexAlive(v)) continue;
+                if (const auto to = relaxed(v)) landings[v] = moved(v, *to);
             }
         });
         for (VertexId v = 0; v < slots; ++v) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "EditMesh.h"
@@ -61,6 +62,9 @@ private:
     double relativeLength(HalfEdge h) const;
     /// Cosine between a triangle and the surface's normals at its corners; 1 where those cancel.
     double uprightness(HalfEdge h) const;
+    /// The triangle of h may become one of this area vector over these normals: it is upright then,
+    /// or no less so than now.
+    bool staysUpright(HalfEdge h, const Vec3& area, const Vec3& normals) const;
     /// The surface bends more sharply at v than edges can follow: the rim of an ear.
     bool isOnCrest(VertexId v) const;
     /// Without a, and b at the landing, the surface would come to lie away from where a is.
@@ -68,7 +72,8 @@ private:
     bool tryCollapse(HalfEdge h, const Landing& landing, double longestAllowed);
     bool tryFlip(HalfEdge h);
     bool tryMove(VertexId v, const Landing& landing);
-    Vec3 relaxed(VertexId v) const;
+    /// None on a crest, where vertices stay.
+    std::optional<Vec3> relaxed(VertexId v) const;
     Landing midpoint(HalfEdge h) const;
     /// Where v comes to lie that was moved to p.
     Landing moved(VertexId v, const Vec3& p) const;

@@ -1,12 +1,18 @@
 #include "adaptiso/HeadPipeline/BemSurfaces.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <numeric>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
 #include "adaptiso/HeadPipeline/BemChecks.h"
@@ -94,6 +100,36 @@ bool staysAsItCame(const BemSurface& surface, const BemModelOptions& options) {
     return surface.denseTriangles == 0 && options.vertices.empty() && !options.edgeLengthMm;
 }
 
+/// Calls work(n) for each surface, in parallel. Of those that throw the first in their order
+/// counts.
+void forEachSurface(const std::vector<TriangleMesh>& surfaces, const BemHooks& hooks,
+                    const char* stage, const std::function<void(std::size_t)>& work) {
+    const std::size_t count = surfaces.size();
+    std::vector<std::int64_t> sizes;
+    for (const TriangleMesh& surface : surfaces) sizes.push_back(std::ssize(surface.triangles));
+    std::vector<std::exception_ptr> errors(count);
+    std::atomic<std::size_t> done = 0;
+    const std::thread::id caller = std::this_thread::get_id();
+    const auto show = [&] {  // callbacks belong to the thread that gave them
+        if (!hooks.progress || std::this_thread::get_id() != caller) return;
+        hooks.progress(stage, static_cast<double>(done) / static_cast<double>(count));
+    };
+    show();
+    parallelLargestFirst(sizes, [&](std::int64_t at) {
+        const auto n = static_cast<std::size_t>(at);
+        try {
+            work(n);
+            ++done;
+            show();
+        } catch (...) {
+            errors[n] = std::current_exception();
+        }
+    });
+    for (const std::exception_ptr& error : errors) {
+        if (error) std::rethrow_exception(error);
+    }
+}
+
 /// Near-equilateral triangles. What can't be had becomes a finding.
 std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemModel& model,
                                    const BemHooks& hooks) {
@@ -104,28 +140,31 @@ std::vector<TriangleMesh> remeshed(const std::vector<TriangleMesh>& dense, BemMo
     if (choosesVertices(model) && comesDense) {
         hooks.stage("remesh", [&] { edgesMm = chooseVertices(dense, model); });
     }
-    std::vector<TriangleMesh> surfaces;
+    std::vector<TriangleMesh> surfaces(dense.size());
+    std::vector<std::optional<RemeshOptions>> options(dense.size());
     for (std::size_t n = 0; n < dense.size(); ++n) {
         if (staysAsItCame(model.surfaces[n], model.options)) {
-            surfaces.push_back(dense[n]);
+            surfaces[n] = dense[n];
             continue;
         }
-        hooks.stage("remesh", [&] {
-            if (hooks.progress) {
-                hooks.progress("remesh",
-                               static_cast<double>(n) / static_cast<double>(dense.size()));
-            }
-            requireFewVertices(dense[n], model, n);
-            RemeshOptions options = remeshOptions(model, dense, n);
-            options.wantedEdgesMm = std::move(edgesMm[n]);
-            Remeshed result = remeshForBem(dense[n], options);
-            model.surfaces[n].remesh = result.statistics;
-            for (Finding& finding : result.findings) {
-                finding.what = bemSurfaceName(n, model.surfaces.size()) + ": " + finding.what;
-                model.findings.push_back(std::move(finding));
-            }
-            surfaces.push_back(std::move(result.mesh));
+        requireFewVertices(dense[n], model, n);
+        options[n] = remeshOptions(model, dense, n);
+        options[n]->wantedEdgesMm = std::move(edgesMm[n]);
+    }
+    std::vector<Remeshed> results(dense.size());
+    hooks.stage("remesh", [&] {
+        forEachSurface(dense, hooks, "remesh", [&](std::size_t n) {
+            if (options[n]) results[n] = remeshForBem(dense[n], *options[n]);
         });
+    });
+    for (std::size_t n = 0; n < dense.size(); ++n) {
+        if (!options[n]) continue;
+        model.surfaces[n].remesh = results[n].statistics;
+        for (Finding& finding : results[n].findings) {
+            finding.what = bemSurfaceName(n, model.surfaces.size()) + ": " + finding.what;
+            model.findings.push_back(std::move(finding));
+        }
+        surfaces[n] = std::move(results[n].mesh);
     }
     return surfaces;
 }
