@@ -204,11 +204,14 @@ FrameChange changeFrame(const MeshFile& input, const std::filesystem::path& file
 }
 
 MeshFile SurfaceChangeRun::readInput(const std::vector<CoordinateFrame>& stated,
-                                     const std::string& purpose) {
+                                     const std::string& purpose,
+                                     const std::function<void(TriangleMesh&)>& prepare) {
     MeshFile file = stage("read", [&] {
-        return readMesh(input.file,
-                        {.keepsPointArrays = true, .inputCoordinates = statedFrame(stated, 0)});
+        return readMesh(input.file, {.keepsFaults = static_cast<bool>(prepare),
+                                     .keepsPointArrays = true,
+                                     .inputCoordinates = statedFrame(stated, 0)});
     });
+    if (prepare) prepare(file.mesh);
     addWarnings(warnings, file.warnings, baseName(input.file));
     input.format = file.format;
     input.frame = file.frame;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -128,8 +129,10 @@ struct SurfaceChangeRun : ProgramRun {
 
     /// Reads `input.file` as stage "read", and summarizes it.
     /// \param stated  as statedFrame() takes it \param purpose  for the message: "simplify"
+    /// \param prepare  gets the mesh as read, faults and all; empty: these are refused
     /// \throws FileError, InvalidInput  it can't be read, or has no area
-    MeshFile readInput(const std::vector<CoordinateFrame>& stated, const std::string& purpose);
+    MeshFile readInput(const std::vector<CoordinateFrame>& stated, const std::string& purpose,
+                       const std::function<void(TriangleMesh&)>& prepare = {});
 
     /// Warns of a --max-error that is large for the surface's size.
     void warnOfSize(std::optional<double> maxErrorMm, const TriangleMesh& mesh);

@@ -390,18 +390,16 @@ Verdict verdictOf(const CheckRun& run) {
     return {run.hasPassed() ? kExitOk : kExitCheckFailed};
 }
 
-/// Whether adaptiso-mend mends what failed, and reads the surface; it would make one of solids.
+/// Whether adaptiso-mend mends what failed; of several solids it would make one.
 bool isForMending(const SurfaceRun& surface) {
     constexpr std::string_view kMended[] = {
-        "closed",  "manifoldEdges",         "manifoldVertices",     "consistentOrientation",
-        "outward", "noDegenerateTriangles", "noDuplicateTriangles", "noSelfIntersections"};
-    constexpr std::string_view kRefused[] = {"finiteCoordinates", "indicesInRange"};
-    const auto fails = [&](std::span<const std::string_view> keys) {
-        return std::ranges::any_of(surface.checks, [&](const Check& check) {
-            return check.breaksProfile() && std::ranges::count(keys, check.key) > 0;
-        });
-    };
-    return surface.facts.solids == 1 && fails(kMended) && !fails(kRefused);
+        "finiteCoordinates",    "indicesInRange",        "closed",  "manifoldEdges",
+        "manifoldVertices",     "consistentOrientation", "outward", "noDegenerateTriangles",
+        "noDuplicateTriangles", "noSelfIntersections"};
+    return surface.facts.solids == 1 &&
+           std::ranges::any_of(surface.checks, [&](const Check& check) {
+               return check.breaksProfile() && std::ranges::count(kMended, check.key) > 0;
+           });
 }
 
 /// \param more  options of adaptiso-mend, a blank before each

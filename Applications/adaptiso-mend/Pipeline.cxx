@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <optional>
 #include <utility>
 
 #include "Common/Batch.h"
@@ -198,14 +199,20 @@ int runMend(const MendCommand& command) {
     MendRun run(command);
     checkOutputs(run);
 
-    const MeshFile input = run.readInput(command.inputCoordinates, "mend");
+    std::optional<TriangleMesh> broken;  // as read, where triangles are dropped before others look
+    const MeshFile input = run.readInput(command.inputCoordinates, "mend", [&](TriangleMesh& mesh) {
+        if (!isBroken(mesh)) return;
+        broken = mesh;
+        dropBrokenTriangles(mesh);
+    });
     requireMendable(input, run);
     run.warnOfSize(command.aim.maxErrorMm, input.mesh);
     TriangleMesh fixed;
     if (!command.around.empty()) fixed = run.stage("read", [&] { return readFixed(input, run); });
     run.stage("check", [&] { run.input.topology = checkTopology(input.mesh); });
 
-    TriangleMesh result = run.stage("mend", [&] { return mendSurface(input.mesh, run); });
+    TriangleMesh result = run.stage(
+        "mend", [&] { return mendSurface(broken ? std::as_const(*broken) : input.mesh, run); });
     std::vector<Vec3> mended = result.points;
     if (run.isMended() && !command.around.empty()) {
         run.stage("nest", [&] { keepAround(fixed, result, run); });

@@ -114,6 +114,24 @@ class Solids(MendTest):
         self.assertAlmostEqual(inner["areaMm2"], 4 * math.pi * 400, delta=60)
 
 
+class Broken(MendTest):
+    def test_triangles_that_name_no_point_are_dropped(self):
+        points, triangles = BALL
+        lost = sum(5 in t for t in triangles)
+        hole = ("--max-hole", 30)
+        for mesh, dropped in (((points[:5] + [(math.nan, 0, 0)] + points[6:], triangles), lost),
+                              ((points, triangles[:-1] + [(0, 1, 9999)]), 1), ((points + [(math.inf, 0, 0)], triangles), 0)):
+            report, checked = self.mended(mesh, "--max-error", 1, *hole)
+            self.assertEqual(report["found"]["brokenTriangles"], dropped)
+            self.assertEqual(report["input"]["triangles"], len(triangles) - dropped)
+            self.assertEqual(report["output"]["copied"], False)
+            self.assertEqual(checked["defects"]["unusedVertex"], 0)
+        self.write("nan.off", ([(math.nan, 0, 0)] * len(points), triangles))
+        done = self.run_mend("nan.off", "-o", "out.off")
+        self.assertEqual((done.returncode, self.path("out.off").exists()), (BAD_INPUT, False))
+        self.assertIn("nan.off: its triangles have no area", done.stderr)
+
+
 class Sound(MendTest):
     def test_keeps_its_bytes(self):
         self.write("ball.off", BALL)

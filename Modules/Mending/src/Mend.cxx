@@ -502,11 +502,56 @@ TriangleMesh mendCut(const TriangleMesh& mesh, const MendInput& input, const Bou
     return mendPrepared(mesh, input, box, options, statistics);
 }
 
+bool isUsable(const TriangleMesh& mesh, const Triangle& triangle) {
+    return std::ranges::all_of(triangle, [&](VertexId v) {
+        return v >= 0 && v < std::ssize(mesh.points) && isFinite(mesh.points[v]);
+    });
+}
+
+/// mend() of a mesh that isBroken().
+Mended mendBroken(TriangleMesh mesh, const MendOptions& options) {
+    const std::int64_t dropped = dropBrokenTriangles(mesh);
+    if (mesh.triangles.empty()) {
+        throw InvalidInput("mend: every triangle names a point that is not there or not finite");
+    }
+    try {
+        Mended result = mend(mesh, options);
+        result.statistics.brokenTriangles = dropped;
+        if (result.statistics.wasSound) {
+            result.statistics.wasSound = false;
+            result.mesh = withoutUnusedPoints(std::move(result.mesh));
+            result.mesh.normals.clear();
+        }
+        return result;
+    } catch (MendRefusal& refusal) {
+        refusal.statistics.brokenTriangles = dropped;
+        throw;
+    }
+}
+
 }  // namespace
+
+bool isBroken(const TriangleMesh& mesh) {
+    return !std::ranges::all_of(mesh.points, [](const Vec3& p) { return isFinite(p); }) ||
+           !std::ranges::all_of(mesh.triangles,
+                                [&](const Triangle& t) { return isUsable(mesh, t); });
+}
+
+std::int64_t dropBrokenTriangles(TriangleMesh& mesh) {
+    const auto dropped =
+        std::erase_if(mesh.triangles, [&](const Triangle& t) { return !isUsable(mesh, t); });
+    const Vec3 there = mesh.triangles.empty() ? Vec3{} : mesh.points[mesh.triangles[0][0]];
+    for (Vec3& p : mesh.points) {
+        if (!isFinite(p)) p = there;
+    }
+    mesh.normals.clear();
+    return static_cast<std::int64_t>(dropped);
+}
 
 Mended mend(const TriangleMesh& mesh, const MendOptions& options) {
     if (mesh.triangles.empty()) throw InvalidInput("mend: the mesh has no triangle");
-    detail::requireMendable(mesh);
+    if (isBroken(mesh)) return mendBroken(mesh, options);
+    detail::requireCountable(mesh);
     BoundingBox box = BoundingBox::empty();  // of points that are used
     for (std::int64_t t = 0; t < std::ssize(mesh.triangles); ++t)
         box.add(boxOf(cornersOf(mesh, t)));

@@ -419,18 +419,7 @@ void findEdges(MendInput& input) {
     }
 }
 
-void requireMendable(const TriangleMesh& mesh) {
-    for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
-        for (const VertexId v : mesh.triangles[n]) {
-            if (v < 0 || v >= std::ssize(mesh.points)) {
-                throw InvalidInput("mend: triangle " + std::to_string(n) + " names point " +
-                                   std::to_string(v) + " of " + std::to_string(mesh.points.size()));
-            }
-            if (!isFinite(mesh.points[v])) {
-                throw InvalidInput("mend: point " + std::to_string(v) + " is not finite");
-            }
-        }
-    }
+void requireCountable(const TriangleMesh& mesh) {
     if (mesh.points.size() > 0x7FFFFFFF || mesh.triangles.size() > 0x7FFFFFFF / 3) {
         throw InvalidInput("mend: more than 2^31 points or edges");
     }

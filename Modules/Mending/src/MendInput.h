@@ -58,14 +58,14 @@ struct MendInput {
     }
 };
 
-/// \throws InvalidInput  an index is out of range, a used point is not finite, there are too many
-void requireMendable(const TriangleMesh& mesh);
+/// \throws InvalidInput  there are too many for numbers of 32 bits
+void requireCountable(const TriangleMesh& mesh);
 
 /// \param statistics  gets what was found
 /// \throws InvalidInput  as mend()
 MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics);
 
-/// The triangles by 32-bit numbers. \pre requireMendable()
+/// The triangles by 32-bit numbers. \pre requireCountable()
 std::vector<TriangleView::Triangle> inShort(const TriangleMesh& mesh);
 
 /// Finds edges and vertices that are not sound. \param statistics  gets how many

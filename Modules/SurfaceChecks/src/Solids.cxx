@@ -24,7 +24,7 @@ struct Placed {
 };
 
 Placed placed(Triangle places, std::size_t solid, std::int64_t number) {
-    std::rotate(places.begin(), std::ranges::min_element(places), places.end());
+    std::rotate(places.begin(), std::min_element(places.begin(), places.end()), places.end());
     const bool isTurned = places[1] > places[2];
     if (isTurned) std::swap(places[1], places[2]);
     return {places, isTurned, solid, number};

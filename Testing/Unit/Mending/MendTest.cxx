@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
@@ -108,6 +109,45 @@ TEST(Mend, ClosesAHoleOfOneTriangle) {
 }
 
 /// A slit three quarters round the ball, whose border crosses itself seen from anywhere.
+TEST(Mend, DropsTrianglesThatNameNoPoint) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const TriangleMesh ball = bare(icosphere(3, {}, 40));
+    TriangleMesh broken = ball;
+    broken.triangles[7][1] = std::ssize(ball.points);
+    broken.triangles[9][0] = -1;
+    const Mended mended = mend(broken, within(0.5));
+    expectMended(mended);
+    EXPECT_EQ(mended.statistics.brokenTriangles, 2);
+    EXPECT_EQ(mended.statistics.keptTriangles, std::ssize(ball.triangles) - 2);
+    EXPECT_EQ(mended.mesh.triangles.size(), ball.triangles.size());
+
+    broken = ball;
+    broken.points[12] = {0, kNan, 0};  // of six triangles
+    MendOptions options = within(0.5);
+    options.maxHoleMm = 20;
+    const Mended capped = mend(broken, options);
+    expectMended(capped);
+    EXPECT_EQ(capped.statistics.brokenTriangles, 6);
+    try {
+        mend(broken, within(0.5));
+        FAIL() << "the hole is wider than 5 % of the diagonal";
+    } catch (const MendRefusal& refusal) {
+        EXPECT_EQ(refusal.statistics.brokenTriangles, 6);
+    }
+
+    broken = ball;
+    broken.points.push_back({kNan, 0, 0});  // of none
+    const Mended whole = mend(broken, within(0.5));
+    EXPECT_EQ(whole.mesh, ball);
+    EXPECT_FALSE(whole.statistics.wasSound);
+    EXPECT_EQ(whole.statistics.brokenTriangles, 0);
+    EXPECT_TRUE(isBroken(broken));
+    EXPECT_FALSE(isBroken(ball));
+
+    broken.points.assign(broken.points.size(), {kNan, 0, 0});
+    EXPECT_THROW(mend(broken, {}), InvalidInput);
+}
+
 TEST(Mend, ClosesABentSlitByTheCornersOfItsBorder) {
     TriangleMesh ball = bare(icosphere(3));
     std::erase_if(ball.triangles, [&](const Triangle& t) {

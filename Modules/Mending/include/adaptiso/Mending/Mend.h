@@ -47,6 +47,7 @@ struct MendStatistics {
     bool wasSound = false;  ///< the result is the input
 
     // found in the input
+    std::int64_t brokenTriangles = 0;  ///< name a point that is not there or not finite: dropped
     std::int64_t degenerateTriangles = 0;  ///< without area: dropped
     std::int64_t duplicateTriangles = 0;   ///< on the corners of another: dropped
     std::int64_t mergedPoints = 0;         ///< of borders, at or near the place of another: merged
@@ -106,13 +107,19 @@ public:
 /// line is not a single one, or does not part the winding numbers.
 ///
 /// Every vertex of a sound input comes back; the mesh itself where nothing is to be mended.
-/// \pre  the mesh has a triangle with an area; indices are in range, coordinates finite
-///       \throws InvalidInput otherwise
+/// \pre  the mesh has a triangle with an area \throws InvalidInput otherwise
 /// \throws MendRefusal  it encloses no volume; a hole is wider than maxHoleMm; the bound can't be
 ///                      held; no flat disc cuts or fills a handle
 /// Cost: O(T log T), some 100 us for each triangle that crosses, and 20 us for each cell; cells go
 /// with the area of what is mended over maxErrorMm squared. The same input gives the same bytes,
 /// whatever the number of threads.
 Mended mend(const TriangleMesh& mesh, const MendOptions& options = {});
+
+/// A point of `mesh` is not finite, or a triangle names one that is not there.
+bool isBroken(const TriangleMesh& mesh);
+
+/// Drops triangles that name such points, as mend() does, and moves points that are not finite to
+/// where others are. Points keep their numbers. \return how many triangles went
+std::int64_t dropBrokenTriangles(TriangleMesh& mesh);
 
 }  // namespace adaptiso
