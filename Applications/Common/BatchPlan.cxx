@@ -77,7 +77,8 @@ std::string strayValue(std::span<const BatchItem> items) {
 /// Refuses, once for all inputs, a folder that is not there. \throws FileError
 void requireFolder(const std::string& option, const fs::path& pattern, const fs::path& below) {
     const fs::path folder = pattern.parent_path();
-    if (folder.empty() || holdsName(folder) || fs::is_directory(below / folder)) return;
+    std::error_code error;
+    if (folder.empty() || holdsName(folder) || fs::is_directory(below / folder, error)) return;
     throw FileError(option + " " + pattern.string() + ": there is no folder " +
                     (below / folder).string() + "; make it first");
 }
@@ -307,9 +308,12 @@ int runBatch(const BatchProgram& program, std::vector<BatchItem> items, const Ba
     std::string lines;
     running.jsonLines = &lines;
     const std::vector<RunRecord> records = runRuns(program, runs, batch, running, common);
-    if (common.wantsJson() && !common.wantsJsonOnStdout()) writeWhole(common.json, lines);
-    if (!batch.table.empty()) writeWhole(batch.table, batchTable(records));
-    if (detail::SignalsWait::hasCome()) {
+    const bool isInterrupted = detail::SignalsWait::hasCome();
+    if (!isInterrupted || !records.empty()) {  // what is there may be of a whole batch
+        if (common.wantsJson() && !common.wantsJsonOnStdout()) writeWhole(common.json, lines);
+        if (!batch.table.empty()) writeWhole(batch.table, batchTable(records));
+    }
+    if (isInterrupted) {
         printError(program.name,
                    "interrupted after " + std::to_string(records.size()) + " of " +
                        counted(std::ssize(runs), "input") +

@@ -135,6 +135,7 @@ private:
     void runAll() {
         std::vector<std::size_t> waiting;
         for (std::size_t n = 0; n < runs_.size(); ++n) {
+            if (detail::SignalsWait::hasCome()) return printNext();
             if (!takeEarlier(n, true)) waiting.push_back(n);
         }
         waiting_ = waiting.size();

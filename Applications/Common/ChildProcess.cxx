@@ -178,7 +178,9 @@ void runChildren(std::size_t count, int jobs,
     std::size_t next = 0;
     std::vector<std::string> waiting;  // arguments of the next; empty: not fetched yet
     while (next < count || !children.empty()) {
-        while (next < count && children.size() < static_cast<std::size_t>(jobs)) {
+        if (detail::SignalsWait::hasCome()) return endAll(children);
+        while (next < count && children.size() < static_cast<std::size_t>(jobs) &&
+               !detail::SignalsWait::hasCome()) {
             if (waiting.empty()) waiting = arguments(next);
             if (waiting.empty()) {
                 ++next;
@@ -196,7 +198,6 @@ void runChildren(std::size_t count, int jobs,
         }
         if (children.empty()) break;
         waitForAny(children);
-        if (detail::SignalsWait::hasCome()) return endAll(children);
         for (auto child = children.begin(); child != children.end();) {
             if (!hasEnded(*child)) {
                 ++child;
@@ -205,6 +206,7 @@ void runChildren(std::size_t count, int jobs,
             const std::size_t number = child->number;
             ChildResult result = std::move(child->result);
             child = children.erase(child);
+            if (detail::SignalsWait::hasCome()) return endAll(children);  // it may have ended by it
             finished(number, std::move(result));
         }
     }

@@ -79,7 +79,7 @@ void addTissue(TissueLabels& tissues, const std::string& text) {
                                                               : nullptr;
     if (equals == std::string::npos || list == nullptr) return refuse();
     for (const std::string& part : parts(text.substr(equals + 1), ',')) {
-        constexpr std::int64_t kMostLabels = 100'000;  // more than any atlas has
+        constexpr std::uint64_t kMostLabels = 100'000;  // more than any atlas has
         std::int64_t first = 0;
         const char* const last = part.data() + part.size();
         std::from_chars_result read = std::from_chars(part.data(), last, first);
@@ -87,11 +87,14 @@ void addTissue(TissueLabels& tissues, const std::string& text) {
         if (read.ec == std::errc{} && read.ptr != last && *read.ptr == '-') {
             read = std::from_chars(read.ptr + 1, last, final);
         }
-        if (read.ec != std::errc{} || read.ptr != last || final < first ||
-            final - first > kMostLabels) {
-            return refuse();
+        if (read.ec != std::errc{} || read.ptr != last || final < first) return refuse();
+        // unsigned: of any two numbers it is right
+        const std::uint64_t more =
+            static_cast<std::uint64_t>(final) - static_cast<std::uint64_t>(first);
+        if (more > kMostLabels) return refuse();
+        for (std::uint64_t n = 0; n <= more; ++n) {
+            list->push_back(first + static_cast<std::int64_t>(n));
         }
-        for (std::int64_t label = first; label <= final; ++label) list->push_back(label);
     }
 }
 

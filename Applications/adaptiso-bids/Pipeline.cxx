@@ -35,8 +35,9 @@ public:
         const detail::SignalsWait untilResultsAreWritten;
         for (const Job& job : jobs) run(job);
         if (options_.makes("check")) run(checkJob(options_, jobs.front()));
-        if (writesJson) writeWhole(common.json, lines_);
-        if (detail::SignalsWait::hasCome()) {
+        const bool isInterrupted = detail::SignalsWait::hasCome();
+        if (writesJson && !(isInterrupted && lines_.empty())) writeWhole(common.json, lines_);
+        if (isInterrupted) {
             printError(kProgram, "interrupted after " + counted(std::ssize(records_), "run") +
                                      "; the same command goes on");
         } else if (!common.isQuiet && !common.wantsJsonOnStdout()) {

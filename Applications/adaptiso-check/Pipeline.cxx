@@ -181,9 +181,9 @@ private:
         const bool areApart = surface.facts.solids > 1;
         run_.warnings.push_back(
             {"several-solids",
-             "it holds " + std::to_string(areApart ? surface.facts.solids : count) + " solids, " +
+             "it holds " + std::to_string(count) + " solids, " +
                  (areApart ? "each checked alone"
-                           : "which were checked as one surface, as not each is closed"),
+                           : "checked as one surface; each is where all are closed"),
              baseName(surface.file)});
     }
 

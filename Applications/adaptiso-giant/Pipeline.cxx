@@ -173,7 +173,15 @@ int runGiant(const GiantOptions& options) {
 }
 
 int runAllSteps(const GiantOptions& options) {
-    checkJoinOutputs(options, options.input);
+    const bool isNew = !std::filesystem::exists(options.work);
+    makeFolders(options.work);  // outputs may lie there
+    try {
+        checkJoinOutputs(options, options.input);
+    } catch (...) {
+        std::error_code error;
+        if (isNew) std::filesystem::remove(options.work, error);
+        throw;
+    }
     GiantOptions quiet = options;
     quiet.common.isQuiet = true;
     quiet.common.json.clear();

@@ -550,6 +550,7 @@ class BadInput(BemTest):
             "must be white, brain, csf, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
             "labels or ranges": ("--labels", "a.nii", "--tissue", "brain=1,x", "-o", "m"),
             "ranges of them": ("--labels", "a.nii", "--tissue", "brain=3-1", "-o", "m"),
+            "labels or ranges of": ("--labels", "a.nii", "--tissue", f"brain={-2**63}-{2**63 - 1}", "-o", "m"),
             "--preset needs --labels": ("--t1", "a.nii", "--preset", "charm", "-o", "m"),
             "--surfaces needs 3 files": ("--surfaces", "a.stl", "-o", "m"),
             "--surfaces needs 1 files": ("--surfaces", "a.stl", "b.stl", "--meg", "-o", "m"),

@@ -227,6 +227,9 @@ class Bytes(InFolder):
             program("adaptiso-labels", self.input, "-o", self.folder / name, "--quiet")
             walls.save(self.folder / ("our" + name))
             self.assertEqual((self.folder / ("our" + name)).read_bytes(), (self.folder / name).read_bytes())
+            checked = adaptiso.check(self.folder / name)  # each solid alone: they share walls
+            self.assertTrue(checked)
+            self.assertGreater(checked.report["sharedWallTriangles"], 0)
         with self.assertRaisesRegex(adaptiso.Error, "frame 'voxel': must be one of ras, lps, tkras"):
             walls.save(self.folder / "body.glb", frame="voxel")
 

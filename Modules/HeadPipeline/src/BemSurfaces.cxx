@@ -109,6 +109,7 @@ void forEachSurface(const std::vector<TriangleMesh>& surfaces, const BemHooks& h
     for (const TriangleMesh& surface : surfaces) sizes.push_back(std::ssize(surface.triangles));
     std::vector<std::exception_ptr> errors(count);
     std::atomic<std::size_t> done = 0;
+    std::atomic<bool> isStopped = false;
     const std::thread::id caller = std::this_thread::get_id();
     const auto show = [&] {  // callbacks belong to the thread that gave them
         if (!hooks.progress || std::this_thread::get_id() != caller) return;
@@ -117,12 +118,19 @@ void forEachSurface(const std::vector<TriangleMesh>& surfaces, const BemHooks& h
     show();
     parallelLargestFirst(sizes, [&](std::int64_t at) {
         const auto n = static_cast<std::size_t>(at);
+        if (isStopped) return;
         try {
             work(n);
-            ++done;
-            show();
         } catch (...) {
             errors[n] = std::current_exception();
+            return;
+        }
+        try {
+            ++done;
+            show();
+        } catch (...) {  // an interruption
+            errors[n] = std::current_exception();
+            isStopped = true;
         }
     });
     for (const std::exception_ptr& error : errors) {

@@ -70,7 +70,7 @@ void JoinedMeshes::add(PlacedMesh&& placed, const AffineTransform& transform) {
         placed.mesh = transformed(placed.mesh, transform);
     }
     const TriangleMesh& mesh = placed.mesh;
-    solids_.push_back(std::ssize(mesh_.triangles));
+    if (!mesh.triangles.empty()) solids_.push_back(std::ssize(mesh_.triangles));
     const auto before = static_cast<VertexId>(mesh_.points.size());
     mesh_.points.insert(mesh_.points.end(), mesh.points.begin(), mesh.points.end());
     mesh_.normals.insert(mesh_.normals.end(), mesh.normals.begin(), mesh.normals.end());

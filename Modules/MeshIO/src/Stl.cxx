@@ -160,6 +160,14 @@ bool beginsSolid(std::string_view text) {
     return lowerCase(trimmed(text.substr(0, kHeaderBytes))).starts_with("solid");
 }
 
+/// \param firstTriangles  of the solids with triangles until now, as MeshFile has them
+void beginSolid(std::vector<std::int64_t>& firstTriangles, std::int64_t triangles) {
+    if (firstTriangles.empty() && triangles > 0) firstTriangles.push_back(0);
+    if (firstTriangles.empty() || firstTriangles.back() != triangles) {
+        firstTriangles.push_back(triangles);
+    }
+}
+
 MeshFile decodeText(ByteSource source, FrameMarks marks) {
     MeshFile file;
     std::vector<Corner> corners;
@@ -169,7 +177,7 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
          word = lowerCase(source.word())) {
         if (word == "solid" || word == "endsolid") {
             isOpen = word == "solid";
-            if (isOpen) file.solids.push_back(std::ssize(corners) / 3);
+            if (isOpen) beginSolid(file.solids, std::ssize(corners) / 3);
             const std::size_t begin = source.position();
             std::string_view name = source.line();
             if (const std::size_t facet = lowerCase(name).find("facet normal");
@@ -198,6 +206,9 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
     if (isOpen) {
         unsupported("it ends without the word 'endsolid'",
                     "it may be cut off: get it again, or add that line at its end if it is whole");
+    }
+    if (!file.solids.empty() && file.solids.back() == std::ssize(corners) / 3) {
+        file.solids.pop_back();  // without triangles
     }
     if (file.solids.size() > 1) {
         file.warnings.push_back({"several-solids", "it holds " +

@@ -272,7 +272,8 @@ private:
         }
         const auto count = static_cast<std::int64_t>(wrong);
         addUnless(kOutward, wrong > 0,
-                  counted(count, "component is", "components are") + " inside out, of " +
+                  counted(count, "component is", "components are") + " inside out" +
+                      (facts_.solids > 1 ? " or in another solid's material" : "") + ", of " +
                       formatCount(static_cast<std::int64_t>(pieces)) + "; first: component " +
                       (wrong > 0 ? std::to_string(facts_.insideOut->front()) : ""));
     }

@@ -1,10 +1,11 @@
 #include "adaptiso/SurfaceChecks/Solids.h"
 
 #include <algorithm>
-#include <array>
+#include <map>
 #include <utility>
 
 #include "adaptiso/MeshQuality/Topology.h"
+#include "adaptiso/MeshQuality/Winding.h"
 
 namespace adaptiso {
 
@@ -34,38 +35,46 @@ Placed placed(Triangle places, std::size_t solid, std::int64_t number) {
 
 std::vector<Solid> separateSolids(TriangleMesh& mesh,
                                   std::span<const std::int64_t> firstTriangles) {
-    if (firstTriangles.size() < 2) return {};
-    const std::size_t count = mesh.points.size();
+    const std::int64_t all = std::ssize(mesh.triangles);
+    if (firstTriangles.size() < 2 || firstTriangles.front() != 0 || firstTriangles.back() > all ||
+        !std::ranges::is_sorted(firstTriangles)) {
+        return {};
+    }
+    const std::int64_t count = std::ssize(mesh.points);
     constexpr VertexId kNone = -1;
-    std::vector<VertexId> numbers(count, kNone);
-    std::vector<std::size_t> usedBy(count, firstTriangles.size());
+    std::vector<VertexId> numbers(mesh.points.size(), kNone);
     TriangleMesh apart;
     std::vector<Solid> solids;
     for (std::size_t n = 0; n < firstTriangles.size(); ++n) {
-        const auto begin = static_cast<std::size_t>(firstTriangles[n]);
-        const std::size_t end = n + 1 < firstTriangles.size()
-                                    ? static_cast<std::size_t>(firstTriangles[n + 1])
-                                    : mesh.triangles.size();
+        const std::int64_t begin = firstTriangles[n];
+        const std::int64_t end = n + 1 < firstTriangles.size() ? firstTriangles[n + 1] : all;
         if (begin == end) continue;
-        solids.push_back({apart.points.size(), begin});
-        for (std::size_t t = begin; t < end; ++t) {
-            Triangle triangle = mesh.triangles[t];
-            for (VertexId& vertex : triangle) {
-                if (vertex < 0 || static_cast<std::size_t>(vertex) >= count) return {};
-                const auto v = static_cast<std::size_t>(vertex);
-                if (usedBy[v] != n) {
-                    usedBy[v] = n;
-                    numbers[v] = static_cast<VertexId>(apart.points.size());
-                    apart.points.push_back(mesh.points[v]);
-                }
-                vertex = numbers[v];
+        solids.push_back({apart.points.size(), static_cast<std::size_t>(begin)});
+        const std::span<const Triangle> triangles(mesh.triangles.data() + begin,
+                                                  static_cast<std::size_t>(end - begin));
+        // in their order, so that vertices of solids that are apart keep their numbers
+        std::vector<VertexId> used;
+        for (const Triangle& triangle : triangles) {
+            for (const VertexId v : triangle) {
+                if (v < 0 || v >= count) return {};
+                used.push_back(v);
             }
+        }
+        std::ranges::sort(used);
+        used.erase(std::unique(used.begin(), used.end()), used.end());
+        for (const VertexId v : used) {
+            numbers[static_cast<std::size_t>(v)] = std::ssize(apart.points);
+            apart.points.push_back(mesh.points[static_cast<std::size_t>(v)]);
+        }
+        for (Triangle triangle : triangles) {
+            for (VertexId& v : triangle) v = numbers[static_cast<std::size_t>(v)];
             apart.triangles.push_back(triangle);
         }
     }
-    if (solids.size() < 2 || !checkTopology(apart, {.maxExamplesPerDefect = 0}).isClosed())
+    if (solids.size() < 2 || !checkTopology(apart, {.maxExamplesPerDefect = 0}).isClosed()) {
         return {};
-    for (std::size_t v = 0; v < count; ++v) {
+    }
+    for (std::size_t v = 0; v < numbers.size(); ++v) {
         if (numbers[v] == kNone) apart.points.push_back(mesh.points[v]);
     }
     mesh = std::move(apart);
@@ -126,6 +135,67 @@ SharedWalls findSharedWalls(const TriangleMesh& mesh, std::span<const Solid> sol
         for (std::int64_t& triangle : pair) triangle = numbers[static_cast<std::size_t>(triangle)];
     }
     return walls;
+}
+
+std::vector<std::int64_t> findPiecesWithin(const TriangleMesh& mesh, const TopologyReport& topology,
+                                           std::span<const Solid> solids) {
+    TriangleMesh joined{mesh.points, {}, mesh.triangles};
+    joinVertices(joined);
+    const std::vector<VertexId> roots = findComponentRoots(mesh);
+    const auto solidOf = [&](VertexId v) {
+        const auto after = std::upper_bound(
+            solids.begin(), solids.end(), static_cast<std::size_t>(v),
+            [](std::size_t point, const Solid& solid) { return point < solid.firstPoint; });
+        return after - solids.begin() - 1;
+    };
+    // a place that several solids have says nothing of where one of them lies
+    constexpr std::ptrdiff_t kNone = -1, kSeveral = -2;
+    std::vector<std::ptrdiff_t> ownerOf(mesh.points.size(), kNone);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::ptrdiff_t& owner = ownerOf[static_cast<std::size_t>(joined.triangles[t][k])];
+            const std::ptrdiff_t solid = solidOf(mesh.triangles[t][k]);
+            owner = owner == kNone || owner == solid ? solid : kSeveral;
+        }
+    }
+    std::vector<std::int64_t> pieceOf(mesh.points.size(), kNone);
+    for (std::size_t v = 0; v < roots.size(); ++v) {
+        const auto piece = std::ranges::lower_bound(topology.components, roots[v], {},
+                                                    &SurfaceComponent::firstVertex);
+        const bool isUsed = piece != topology.components.end() && piece->firstVertex == roots[v];
+        if (isUsed) pieceOf[v] = piece - topology.components.begin();
+    }
+    std::vector<VertexId> ownVertex(topology.components.size(), kNone);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (ownerOf[static_cast<std::size_t>(joined.triangles[t][k])] == kSeveral) continue;
+            const VertexId v = mesh.triangles[t][k];
+            ownVertex[static_cast<std::size_t>(pieceOf[static_cast<std::size_t>(v)])] = v;
+        }
+    }
+    std::vector<std::int64_t> pieces;
+    std::vector<Vec3> points;
+    for (std::size_t n = 0; n < ownVertex.size(); ++n) {
+        if (ownVertex[n] == kNone) continue;
+        pieces.push_back(static_cast<std::int64_t>(n));
+        points.push_back(mesh.points[static_cast<std::size_t>(ownVertex[n])]);
+    }
+    const auto solidOfPiece = [&](std::size_t piece) {
+        return solidOf(topology.components[piece].firstVertex);
+    };
+    const auto around =
+        findPiecesAround(mesh, pieceOf, points, [&](std::size_t n, std::size_t piece) {
+            return solidOfPiece(piece) != solidOfPiece(static_cast<std::size_t>(pieces[n]));
+        });
+    std::vector<std::int64_t> within;
+    for (std::size_t n = 0; n < pieces.size(); ++n) {
+        std::map<std::ptrdiff_t, int> walls;  // of each solid, between the point and far away
+        for (const std::uint32_t piece : around[n]) ++walls[solidOfPiece(piece)];
+        if (std::ranges::any_of(walls, [](const auto& each) { return each.second % 2 == 1; })) {
+            within.push_back(pieces[n]);
+        }
+    }
+    return within;
 }
 
 }  // namespace adaptiso

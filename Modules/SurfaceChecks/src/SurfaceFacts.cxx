@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -38,26 +39,39 @@ DuplicateReport findDuplicatesOf(const TriangleMesh& mesh, std::span<const Solid
     return all;
 }
 
-/// The pieces that are the wrong way round in their solid, as numbers into topology.components.
-std::optional<std::vector<std::int64_t>> findInsideOutPieces(const TriangleMesh& mesh,
-                                                             const TopologyReport& topology,
-                                                             std::span<const Solid> solids) {
-    if (solids.empty()) return findInsideOutPieces(mesh, topology);
-    std::vector<std::int64_t> insideOut;
+/// The pieces that are the wrong way round, and those that lie in another solid's material, as
+/// numbers into topology.components. The wall of a cavity may be a solid of its own in the file: a
+/// piece that is right among all is right.
+std::optional<std::vector<std::int64_t>> findWrongPieces(const TriangleMesh& mesh,
+                                                         const TopologyReport& topology,
+                                                         std::span<const Solid> solids) {
+    const auto amongAll = findInsideOutPieces(mesh, topology);
+    if (solids.empty()) return amongAll;
+    std::vector<std::int64_t> wrongAlone;
     for (std::size_t n = 0; n < solids.size(); ++n) {
         const TriangleMesh solid = solidAt(mesh, solids, n);
         const TopologyReport alone = checkTopology(solid, {.maxExamplesPerDefect = 0});
-        const auto found = adaptiso::findInsideOutPieces(solid, alone);
+        const auto found = findInsideOutPieces(solid, alone);
         if (!found) return std::nullopt;
         for (const std::int64_t piece : *found) {
             const auto first = alone.components[static_cast<std::size_t>(piece)].firstVertex +
                                static_cast<VertexId>(solids[n].firstPoint);
             const auto at = std::ranges::lower_bound(topology.components, first, {},
                                                      &SurfaceComponent::firstVertex);
-            insideOut.push_back(at - topology.components.begin());
+            wrongAlone.push_back(at - topology.components.begin());
         }
     }
-    return insideOut;
+    const std::vector<std::int64_t> within = findPiecesWithin(mesh, topology, solids);
+    std::vector<std::int64_t> wrong;
+    std::set_union(wrongAlone.begin(), wrongAlone.end(), within.begin(), within.end(),
+                   std::back_inserter(wrong));
+    // shared walls may be more crossings than are decided: then each counts by itself
+    if (amongAll) {
+        std::erase_if(wrong, [&](std::int64_t piece) {
+            return !std::binary_search(amongAll->begin(), amongAll->end(), piece);
+        });
+    }
+    return wrong;
 }
 
 }  // namespace
@@ -98,7 +112,7 @@ SurfaceFacts measureSurface(const TriangleMesh& given, const SizeLimits& sizeLim
     if (facts.topology.isWatertight()) {
         facts.volumeMm3 = volume;
         if (facts.topology.count(TopologyDefect::NonFiniteVertex) == 0) {
-            facts.insideOut = findInsideOutPieces(mesh, facts.topology, solids);
+            facts.insideOut = findWrongPieces(mesh, facts.topology, solids);
         }
     }
     facts.duplicates = solids.empty() ? findDuplicates(mesh) : findDuplicatesOf(mesh, solids);

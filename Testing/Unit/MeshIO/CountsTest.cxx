@@ -412,6 +412,14 @@ TEST(Counts, SolidsOfOneTextAreAllRead) {
     EXPECT_EQ(file.mesh.triangles.size(), 2U);
     EXPECT_EQ(file.mesh.points.size(), 6U);
     EXPECT_EQ(file.solids, (std::vector<std::int64_t>{0, 1}));
+    // those without triangles are none; triangles before the first are one
+    const std::string empty = "solid x\nendsolid x\n";
+    EXPECT_TRUE(decoded(solid("a", 0) + empty + empty, "a.stl").solids.empty());
+    EXPECT_EQ(decoded(empty + solid("a", 0) + empty + solid("b", 1), "a.stl").solids,
+              (std::vector<std::int64_t>{0, 1}));
+    EXPECT_EQ(
+        decoded("solidA" + solid("", 0).substr(6) + solid("b", 1) + solid("c", 2), "a.stl").solids,
+        (std::vector<std::int64_t>{0, 1, 2}));
     EXPECT_EQ(codesOf(file), Codes{"several-solids"});
     EXPECT_EQ(codesOf(decoded(solid("a", 0), "a.stl")), Codes{});
     std::string solids;

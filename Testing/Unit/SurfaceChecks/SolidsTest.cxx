@@ -90,6 +90,24 @@ TEST(Solids, ThatFillAnothersCavityFaceOutward) {
     EXPECT_EQ(facts.sharedWallTriangles, std::ssize(ball.triangles));
 }
 
+TEST(Solids, InAnothersMaterialAreAFault) {
+    const TriangleMesh large = testing::icosphere(2, {}, 20), small = testing::icosphere(2, {}, 5),
+                       beside = testing::icosphere(2, {30, 0, 0}, 5);
+    const SurfaceFacts overlapping = measured(Parts().add(large).add(small).add(beside), false);
+    EXPECT_EQ(failedKeys(overlapping), Keys{"outward"});
+    EXPECT_EQ(overlapping.insideOut, std::vector<std::int64_t>{1});
+    // the wall of a cavity as a solid of its own
+    EXPECT_EQ(failedKeys(measured(Parts().add(large).add(flipped(small)), false)), Keys{});
+    // a ball in that cavity, touching nothing; and one in a ball's wall
+    Parts hollow = Parts().add(large).add(flipped(testing::icosphere(2, {}, 15)));
+    hollow.firstTriangles.pop_back();
+    EXPECT_EQ(failedKeys(measured(Parts(hollow).add(small), false)), Keys{});
+    const SurfaceFacts inWall =
+        measured(Parts(hollow).add(testing::icosphere(2, {17.5, 0, 0}, 1)), false);
+    EXPECT_EQ(failedKeys(inWall), Keys{"outward"});
+    EXPECT_EQ(inWall.insideOut, std::vector<std::int64_t>{2});
+}
+
 TEST(Solids, AreJudgedEach) {
     const SurfaceFacts crossing =
         measured(Parts().add(corner(10)).add(corner(10, false, {1, 1, 1})), false);
@@ -122,6 +140,12 @@ TEST(Solids, PatchesOfOneSurfaceStayJoined) {
     EXPECT_TRUE(separateSolids(mesh, std::vector<std::int64_t>{0}).empty());
     EXPECT_TRUE(separateSolids(mesh, std::vector<std::int64_t>{0, 4}).empty()) << "one is empty";
     EXPECT_TRUE(separateSolids(mesh, {}).empty());
+    // numbers that no reader gives
+    Parts parts = Parts().add(corner(10)).add(corner(10, true)).add(corner(10, true, {-9, 0, 0}));
+    for (const std::vector<std::int64_t>& wrong :
+         {std::vector<std::int64_t>{4, 8}, {0, 8, 4}, {0, 4, 99}}) {
+        EXPECT_TRUE(separateSolids(parts.mesh, wrong).empty());
+    }
     EXPECT_EQ(mesh, given);
 }
 

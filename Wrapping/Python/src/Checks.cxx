@@ -37,7 +37,12 @@ std::string checkMesh(const MeshData& data, const py::dict& options, int threads
     const CheckRules rules = rulesOf(options);
     requireTriangles(data, "mesh");
     std::string json;
-    runUnlocked(threads, [&] { json = dumped(surfaceVerdict(data.mesh(), rules)); });
+    runUnlocked(threads, [&] {
+        TriangleMesh apart;
+        std::vector<Solid> solids;
+        if (!data.solids().empty()) solids = separateSolids(apart = data.mesh(), data.solids());
+        json = dumped(surfaceVerdict(solids.empty() ? data.mesh() : apart, rules, solids));
+    });
     return json;
 }
 

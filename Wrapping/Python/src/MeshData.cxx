@@ -335,6 +335,7 @@ std::pair<std::shared_ptr<MeshData>, std::vector<Warning>> readMeshData(
         data->setImage(*file.volume);
     }
     data->setFrameKnown(isFrameKnown);
+    data->setSolids(std::move(file.solids));
     return {data, warnings};
 }
 

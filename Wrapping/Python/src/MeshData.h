@@ -100,6 +100,9 @@ public:
     void setFrameKnown(bool isKnown) { isFrameKnown_ = isKnown; }
     const std::optional<ImageGeometry>& image() const { return image_; }
     void setImage(const ImageGeometry& image) { image_ = image; }
+    /// MeshFile::solids of the file that it was read from.
+    const std::vector<std::int64_t>& solids() const { return solids_; }
+    void setSolids(std::vector<std::int64_t> solids) { solids_ = std::move(solids); }
     std::optional<double> errorBoundMm() const { return errorBoundMm_; }
     void setErrorBoundMm(std::optional<double> bound) { errorBoundMm_ = bound; }
 
@@ -146,6 +149,7 @@ private:
     CoordinateFrame frame_ = CoordinateFrame::Ras;
     bool isFrameKnown_ = true;
     std::optional<ImageGeometry> image_;
+    std::vector<std::int64_t> solids_;
     std::optional<double> errorBoundMm_, requestedBoundMm_;
     std::optional<SurfaceHistory> history_;
     std::string report_;

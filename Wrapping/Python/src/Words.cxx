@@ -22,9 +22,11 @@ std::optional<CoordinateFrame> frameOf(const std::optional<std::string>& word) {
     return frameOf(*word);
 }
 
-Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules) {
-    SurfaceFacts facts = measureSurface(mesh, sizeLimitsOf(rules.profileInUse()), rules.maxPairs);
-    if (rules.measuresWalls) measureWallsOf(mesh, rules.wallLimitMm(), facts);
+Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules,
+                    std::span<const Solid> solids) {
+    SurfaceFacts facts =
+        measureSurface(mesh, sizeLimitsOf(rules.profileInUse()), rules.maxPairs, solids);
+    if (rules.measuresWalls) measureWallsOf(mesh, rules.wallLimitMm(), facts, solids);
     Json json = verdictJson(judgeSurface(facts, rules));
     json.update(factsJson(facts));
     return json;

@@ -33,7 +33,9 @@ CoordinateFrame frameOf(const std::string& word);
 std::optional<CoordinateFrame> frameOf(const std::optional<std::string>& word);
 
 /// An entry of adaptiso-check's `surfaces`: verdict and facts.
-Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules);
+/// \param solids  as separateSolids() gives them for `mesh`
+Json surfaceVerdict(const TriangleMesh& mesh, const CheckRules& rules,
+                    std::span<const Solid> solids = {});
 
 /// adaptiso-check's report of nested surfaces: passed, surfaces, nesting.pairs.
 /// \param gapsMm  required of each pair; empty: rules.minGapMm of all

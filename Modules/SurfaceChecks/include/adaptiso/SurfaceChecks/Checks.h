@@ -36,9 +36,9 @@ struct SurfaceFacts {
     ShapeReport shape;
     SizeReport size;
     SolidAngleCriterion solidAngle;
-    /// Numbers of the pieces that are the wrong way round; empty if that is undefined: the
-    /// surface is open, not manifold, not oriented, or not finite; or undecided:
-    /// findInsideOutPieces() says when.
+    /// Numbers of the pieces that are the wrong way round, or of a solid in the material of
+    /// another; empty if that is undefined: the surface is open, not manifold, not oriented, or not
+    /// finite; or undecided: findInsideOutPieces() says when.
     std::optional<std::vector<std::int64_t>> insideOut;
     std::optional<WallReport> walls;  ///< empty unless measured: measureWallsOf()
     double areaMm2 = 0;               ///< of the triangles with finite corners
@@ -54,8 +54,8 @@ void replaceBadIndices(TriangleMesh& mesh);
 
 /// Triangles that name missing points are counted, and left out of all other measures.
 /// \param maxPairs  of triangles that cross, to list
-/// \param solids    as separateSolids() gives them: duplicates are sought in each, each is to face
-///                  outward by itself, and walls that two share may lie on each other. Empty: the
+/// \param solids    as separateSolids() gives them: duplicates are sought in each, one may fill
+///                  another's cavity, and walls that two share may lie on each other. Empty: the
 ///                  mesh is one surface
 SurfaceFacts measureSurface(const TriangleMesh& mesh, const SizeLimits& sizeLimits,
                             std::int64_t maxPairs, std::span<const Solid> solids = {});

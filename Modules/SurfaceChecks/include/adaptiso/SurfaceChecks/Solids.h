@@ -7,6 +7,7 @@
 
 #include "adaptiso/Core/TriangleMesh.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
+#include "adaptiso/MeshQuality/Topology.h"
 
 namespace adaptiso {
 
@@ -18,11 +19,12 @@ struct Solid {
 
 /// Gives every solid vertices of its own, if each is then closed: a file of organs whose walls
 /// touch, or of parts to print. Patches of one surface, which are open each, stay joined.
-/// \param mesh            triangles keep their numbers; vertices are renumbered by solid, unused
-///                        ones last; normals are left out
-/// \param firstTriangles  of each solid, ascending, the first 0 (MeshFile::solids)
+/// \param mesh            triangles keep their numbers; vertices are numbered by solid, then in
+/// their
+///                        order, unused ones last; normals are left out
+/// \param firstTriangles  of each solid (MeshFile::solids)
 /// \return those with triangles; empty, and `mesh` as it was, where there are not several, one is
-///         open, or triangles name points that are not there
+///         open, triangles name points that are not there, or numbers do not ascend from 0
 std::vector<Solid> separateSolids(TriangleMesh& mesh, std::span<const std::int64_t> firstTriangles);
 
 /// One of them as a mesh of its own. \param number  into `solids`
@@ -38,5 +40,13 @@ struct SharedWalls {
 /// Cost: that of findSelfIntersections(), and O(T log T)
 SharedWalls findSharedWalls(const TriangleMesh& mesh, std::span<const Solid> solids,
                             const SelfIntersectionOptions& options);
+
+/// Pieces, as numbers into topology.components, that lie in the material of another solid: some
+/// vertex, at whose place no other solid has one, has an odd number of that solid's pieces round
+/// it. A solid that fills another's cavity does not. \param topology  checkTopology(mesh)
+/// \pre topology.isWatertight(), coordinates are finite
+/// Cost: O(T log T), and a ray for each piece; 64 bytes a vertex
+std::vector<std::int64_t> findPiecesWithin(const TriangleMesh& mesh, const TopologyReport& topology,
+                                           std::span<const Solid> solids);
 
 }  // namespace adaptiso
