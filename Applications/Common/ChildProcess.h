@@ -27,9 +27,9 @@ struct ChildResult {
 ///
 /// A child that crashes, or is killed for lack of memory, takes nothing down with it. Children end
 /// (SIGTERM, so that they remove their temporaries) when this process does, however it ends. Where
-/// fewer than `jobs` processes can be had at a time, as many as can run. Where a signal has come that
-/// a SignalsWait of the caller's postpones, the children that run are ended without a result, and no
-/// further one is started.
+/// fewer than `jobs` processes can be had at a time, as many as can run. When a signal has come
+/// that a SignalsWait of the caller postpones, children that run are ended without a result, and
+/// no further one is started.
 /// \param arguments  of the n-th run, without the program's name; empty: skip it
 /// \param finished   called with n and the result, in the order in which the runs end
 /// \param program    a path, or a name to look up in PATH; empty: this program
