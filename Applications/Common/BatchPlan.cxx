@@ -74,15 +74,6 @@ std::string strayValue(std::span<const BatchItem> items) {
     return {};
 }
 
-/// Refuses, once for all inputs, a folder that is not there. \throws FileError
-void requireFolder(const std::string& option, const fs::path& pattern, const fs::path& below) {
-    const fs::path folder = pattern.parent_path();
-    std::error_code error;
-    if (folder.empty() || holdsName(folder) || fs::is_directory(below / folder, error)) return;
-    throw FileError(option + " " + pattern.string() + ": there is no folder " +
-                    (below / folder).string() + "; make it first");
-}
-
 void checkOptions(const BatchProgram& program, const BatchOptions& batch,
                   std::span<const BatchItem> items) {
     const auto require = [](bool isGood, const std::string& message) {
@@ -93,9 +84,12 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch,
     for (const std::string& option : batch.runOptions) {
         const auto [name, value] = split(option);
         if (!isIn(program.outputOptions, name)) continue;
-        if (name == kOutputOption) requireFolder(name, value, batch.outputFolder);
         require(name != kOutputOption || batch.outputFolder.empty() || staysBelow(value),
                 name + " " + value + ": must be a name below --output-dir");
+        const fs::path folder = fs::path(value).parent_path();
+        if (name == kOutputOption && !folder.empty() && !holdsName(folder)) {
+            checkOutput(batch.outputFolder / value);  // once for all inputs
+        }
         if (holdsName(value) || items.size() == 1) continue;
         const std::string stray = strayValue(items);
         if (!stray.empty()) throw UsageError(stray);

@@ -390,7 +390,7 @@ Verdict verdictOf(const CheckRun& run) {
     return {run.hasPassed() ? kExitOk : kExitCheckFailed};
 }
 
-/// Whether adaptiso-mend mends what failed; of several solids it would make one.
+/// True where a check failed that adaptiso-mend mends. False for several solids, which it joins.
 bool isForMending(const SurfaceRun& surface) {
     constexpr std::string_view kMended[] = {
         "finiteCoordinates",    "indicesInRange",        "closed",  "manifoldEdges",

@@ -131,7 +131,7 @@ class ManyInputs(BatchTest):
 
     def test_a_folder_that_is_not_there_is_told_once(self):
         for more, folder in (((), "sub"), (("--output-dir", "many"), "many/sub")):
-            self.assert_fails(BAD_INPUT, f"--output sub/{{name}}.ply: there is no folder {folder}; make it",
+            self.assert_fails(BAD_INPUT, f"sub/{{name}}.ply: there is no folder {folder}",
                               "a.nii", "b.nii", "--iso", 100, "-o", "sub/{name}.ply", *more)
 
     def test_inputs_of_one_name_are_refused(self):

@@ -72,7 +72,7 @@ private:
     bool tryCollapse(HalfEdge h, const Landing& landing, double longestAllowed);
     bool tryFlip(HalfEdge h);
     bool tryMove(VertexId v, const Landing& landing);
-    /// None on a crest, where vertices stay.
+    /// \return empty on a crest: its vertices are not moved
     std::optional<Vec3> relaxed(VertexId v) const;
     Landing midpoint(HalfEdge h) const;
     /// Where v comes to lie that was moved to p.

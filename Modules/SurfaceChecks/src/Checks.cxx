@@ -67,8 +67,8 @@ constexpr CheckRule kDegenerate{
 constexpr CheckRule kDuplicateTriangles{
     "noDuplicateTriangles",
     "no duplicate triangle",
-    "no two triangles have their corners at the same three places; a wall that two solids of a "
-    "file share is none",
+    "no two triangles have their corners at the same three places, but for walls that two solids "
+    "of a file share",
     true,
     true,
     true};
@@ -309,7 +309,6 @@ private:
                     counted(facts_.sharedWallTriangles, "triangle is", "triangles are") +
                         " of walls that two solids share",
                     "; ");
-            ;
         }
         return text;
     }

@@ -31,6 +31,60 @@ Placed placed(Triangle places, std::size_t solid, std::int64_t number) {
     return {places, isTurned, solid, number};
 }
 
+constexpr std::int64_t kNone = -1;
+
+std::ptrdiff_t solidOf(VertexId vertex, std::span<const Solid> solids) {
+    const auto after = std::upper_bound(
+        solids.begin(), solids.end(), static_cast<std::size_t>(vertex),
+        [](std::size_t point, const Solid& solid) { return point < solid.firstPoint; });
+    return after - solids.begin() - 1;
+}
+
+/// Numbers into topology.components; kNone: of a vertex that no triangle with three corners uses.
+std::vector<std::int64_t> piecesOfVertices(const TriangleMesh& mesh,
+                                           const TopologyReport& topology) {
+    const std::vector<VertexId> roots = findComponentRoots(mesh);
+    std::vector<std::int64_t> pieceOf(mesh.points.size(), kNone);
+    for (std::size_t n = 0; n < topology.components.size(); ++n) {
+        pieceOf[static_cast<std::size_t>(topology.components[n].firstVertex)] =
+            static_cast<std::int64_t>(n);
+    }
+    for (std::size_t v = 0; v < roots.size(); ++v) {
+        pieceOf[v] = pieceOf[static_cast<std::size_t>(roots[v])];
+    }
+    return pieceOf;
+}
+
+/// Of each piece a vertex at a place where no other solid has one, by number of piece. A place that
+/// solids share is in neither. Pieces without such a vertex are left out.
+std::vector<VertexId> ownVertices(const TriangleMesh& mesh, std::span<const Solid> solids,
+                                  const std::vector<std::int64_t>& pieceOf) {
+    TriangleMesh joined{mesh.points, {}, mesh.triangles};
+    joinVertices(joined);
+    constexpr std::ptrdiff_t kSeveral = -2;
+    std::vector<std::ptrdiff_t> ownerOf(mesh.points.size(), kNone);
+    const auto forEachCorner = [&](const auto& visit) {
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                visit(mesh.triangles[t][k],
+                      ownerOf[static_cast<std::size_t>(joined.triangles[t][k])]);
+            }
+        }
+    };
+    forEachCorner([&](VertexId v, std::ptrdiff_t& owner) {
+        const std::ptrdiff_t solid = solidOf(v, solids);
+        owner = owner == kNone || owner == solid ? solid : kSeveral;
+    });
+    std::map<std::int64_t, VertexId> vertexOf;  // of each piece
+    forEachCorner([&](VertexId v, std::ptrdiff_t owner) {
+        const std::int64_t piece = pieceOf[static_cast<std::size_t>(v)];
+        if (piece != kNone && owner != kSeveral) vertexOf.emplace(piece, v);
+    });
+    std::vector<VertexId> vertices;
+    for (const auto& [piece, v] : vertexOf) vertices.push_back(v);
+    return vertices;
+}
+
 }  // namespace
 
 std::vector<Solid> separateSolids(TriangleMesh& mesh,
@@ -41,7 +95,6 @@ std::vector<Solid> separateSolids(TriangleMesh& mesh,
         return {};
     }
     const std::int64_t count = std::ssize(mesh.points);
-    constexpr VertexId kNone = -1;
     std::vector<VertexId> numbers(mesh.points.size(), kNone);
     TriangleMesh apart;
     std::vector<Solid> solids;
@@ -139,49 +192,15 @@ SharedWalls findSharedWalls(const TriangleMesh& mesh, std::span<const Solid> sol
 
 std::vector<std::int64_t> findPiecesWithin(const TriangleMesh& mesh, const TopologyReport& topology,
                                            std::span<const Solid> solids) {
-    TriangleMesh joined{mesh.points, {}, mesh.triangles};
-    joinVertices(joined);
-    const std::vector<VertexId> roots = findComponentRoots(mesh);
-    const auto solidOf = [&](VertexId v) {
-        const auto after = std::upper_bound(
-            solids.begin(), solids.end(), static_cast<std::size_t>(v),
-            [](std::size_t point, const Solid& solid) { return point < solid.firstPoint; });
-        return after - solids.begin() - 1;
-    };
-    // a place that several solids have says nothing of where one of them lies
-    constexpr std::ptrdiff_t kNone = -1, kSeveral = -2;
-    std::vector<std::ptrdiff_t> ownerOf(mesh.points.size(), kNone);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::ptrdiff_t& owner = ownerOf[static_cast<std::size_t>(joined.triangles[t][k])];
-            const std::ptrdiff_t solid = solidOf(mesh.triangles[t][k]);
-            owner = owner == kNone || owner == solid ? solid : kSeveral;
-        }
-    }
-    std::vector<std::int64_t> pieceOf(mesh.points.size(), kNone);
-    for (std::size_t v = 0; v < roots.size(); ++v) {
-        const auto piece = std::ranges::lower_bound(topology.components, roots[v], {},
-                                                    &SurfaceComponent::firstVertex);
-        const bool isUsed = piece != topology.components.end() && piece->firstVertex == roots[v];
-        if (isUsed) pieceOf[v] = piece - topology.components.begin();
-    }
-    std::vector<VertexId> ownVertex(topology.components.size(), kNone);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (ownerOf[static_cast<std::size_t>(joined.triangles[t][k])] == kSeveral) continue;
-            const VertexId v = mesh.triangles[t][k];
-            ownVertex[static_cast<std::size_t>(pieceOf[static_cast<std::size_t>(v)])] = v;
-        }
-    }
+    const std::vector<std::int64_t> pieceOf = piecesOfVertices(mesh, topology);
     std::vector<std::int64_t> pieces;
     std::vector<Vec3> points;
-    for (std::size_t n = 0; n < ownVertex.size(); ++n) {
-        if (ownVertex[n] == kNone) continue;
-        pieces.push_back(static_cast<std::int64_t>(n));
-        points.push_back(mesh.points[static_cast<std::size_t>(ownVertex[n])]);
+    for (const VertexId v : ownVertices(mesh, solids, pieceOf)) {
+        pieces.push_back(pieceOf[static_cast<std::size_t>(v)]);
+        points.push_back(mesh.points[static_cast<std::size_t>(v)]);
     }
     const auto solidOfPiece = [&](std::size_t piece) {
-        return solidOf(topology.components[piece].firstVertex);
+        return solidOf(topology.components[piece].firstVertex, solids);
     };
     const auto around =
         findPiecesAround(mesh, pieceOf, points, [&](std::size_t n, std::size_t piece) {

@@ -412,7 +412,7 @@ TEST(Counts, SolidsOfOneTextAreAllRead) {
     EXPECT_EQ(file.mesh.triangles.size(), 2U);
     EXPECT_EQ(file.mesh.points.size(), 6U);
     EXPECT_EQ(file.solids, (std::vector<std::int64_t>{0, 1}));
-    // those without triangles are none; triangles before the first are one
+    // Solids without triangles are left out. Triangles before the first solid count as a solid.
     const std::string empty = "solid x\nendsolid x\n";
     EXPECT_TRUE(decoded(solid("a", 0) + empty + empty, "a.stl").solids.empty());
     EXPECT_EQ(decoded(empty + solid("a", 0) + empty + solid("b", 1), "a.stl").solids,

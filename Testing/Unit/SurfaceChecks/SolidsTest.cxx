@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "Support/Meshes.h"
@@ -131,6 +132,17 @@ TEST(Solids, AreJudgedEach) {
     const SurfaceFacts degenerate = measured(parts, false);
     EXPECT_EQ(failedKeys(degenerate), Keys{"noDegenerateTriangles"});
     EXPECT_EQ(degenerate.sharedWallTriangles, 1);
+
+    // a triangle of one vertex, which no other uses, is of no piece
+    parts = Parts().add(corner(10)).add(corner(10, true));
+    parts.mesh.points.push_back({99, 99, 99});
+    parts.mesh.triangles.push_back({8, 8, 8});
+    EXPECT_EQ(failedKeys(measured(parts, false)), Keys{"noDegenerateTriangles"});
+    TriangleMesh nan = parts.mesh;
+    nan.points[1].x = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<Solid> solids = separateSolids(nan, parts.firstTriangles);
+    EXPECT_EQ(failedKeys(measureSurface(nan, {}, 10, solids)),
+              (Keys{"finiteCoordinates", "noDegenerateTriangles"}));
 }
 
 TEST(Solids, PatchesOfOneSurfaceStayJoined) {

@@ -53,8 +53,8 @@ def mend(mesh: Any, faces: Any = None, *, around: Any = None, gap: Optional[floa
     Mesh
         In the frame of `mesh`. ``report`` has ``was_sound``; what was found: ``border_edges``,
         ``bad_edges``, ``bad_vertices``, ``crossing_triangles``, ``flipped_triangles``,
-        ``broken_triangles`` (0: such a mesh is refused here), ``degenerate_triangles``, ``duplicate_triangles``, ``merged_points`` and, by `ball`,
-        ``handles``; ``kept_triangles`` and ``cut_triangles`` of `mesh`; lists of the places
+        ``degenerate_triangles``, ``duplicate_triangles``, ``merged_points``, ``broken_triangles``
+        (0, as such meshes are refused here) and, by `ball`, ``handles``; ``kept_triangles`` and ``cut_triangles`` of `mesh`; lists of the places
         ``filled`` (holes closed), ``left_open``, ``inner`` (dropped: inside the solid), ``thin``
         (dropped: too thin for the bound), ``cut_handles`` and ``filled_handles``, each with
         ``middle``, ``span`` and ``area``; ``max_error``; and, by `around`, ``gap``,

@@ -126,7 +126,8 @@ struct MeshFile {
     /// With options.keepsPointArrays: names of arrays that were passed over, of triangles, of text
     /// and of more than nine components, and GIFTI's beside the surface.
     std::vector<std::string> arraysLeftOut{};
-    /// Of a file of several solids, meshes or objects: the first triangle of each, ascending.
+    /// Number of the first triangle of each solid, mesh or object of the file, ascending; empty:
+    /// the file holds one.
     std::vector<std::int64_t> solids{};
     const MeshFormat* format = nullptr;  ///< as its content says; never null after reading
     std::vector<Warning> warnings{};     ///< of reading; without the file's name
