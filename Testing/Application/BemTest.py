@@ -466,6 +466,32 @@ def finer(arguments):
 
 
 class Plausibility(BemTest):
+    FIGURES = {"necks": {"neckReachMm"}, "notCutFlat": {"flatShare"}, "edgesInProportion": {"edgeRatio"},
+               "innerSkullVolume": {"innerSkullCm3"}, "dents": {"dentMm"},
+               "skullThickness": {"skullMedianMm", "skullThickMm", "skullThickToThin"},
+               "scalpThickness": {"scalpMedianMm", "scalpThickMm"}, "edgesAgainstGap": {"coarseShare"},
+               "vertexCounts": {"vertexRatio"}}
+
+    def test_what_is_noted_has_a_value_beyond_its_limits(self):
+        def is_beyond(figure):
+            least, most, value = figure["least"], figure["most"], figure["value"]
+            return (least is not None and value < least) or (most is not None and value > most)
+
+        noted = set()
+        for image in (head(), head(n=44, origin=(-86, -64, -86))):
+            self.bem(*finer(self.labels(image=image)), "-o", "model", "--force")
+            report = self.report()
+            for note in report["plausibility"]:
+                figures = [each for each in report["limits"]
+                           if each["of"] == note["of"] and each["name"] in self.FIGURES[note["name"]]]
+                self.assertEqual({each["name"] for each in figures}, self.FIGURES[note["name"]])
+                self.assertEqual(any(map(is_beyond, figures)), note["outcome"] == "noted", note)
+                if note["outcome"] == "noted":
+                    noted.add(note["name"])
+            self.assertEqual(len(report["limits"]),
+                             sum(len(self.FIGURES[note["name"]]) for note in report["plausibility"]))
+        self.assertLessEqual({"innerSkullVolume", "notCutFlat"}, noted)
+
     def test_is_told_in_report_and_text(self):
         done = self.bem(*self.labels(), "-o", "model")
         notes = {(note["name"], note["of"]): note for note in self.report()["plausibility"]}

@@ -81,6 +81,7 @@ class Result:
         self.case, self.way = case, way
         self.code, self.message, self.warnings, self.seconds = None, "", [], 0
         self.dice = self.mm = None
+        self.limits = []
         self.surfaces = self.right = self.place = None
 
     @property
@@ -121,7 +122,8 @@ def try_case(program, folder, head, right, case, way, vertices):
     result.code = done.returncode
     result.message = done.stderr.strip().splitlines()[-1].replace(str(at) + "/", "") if done.stderr.strip() else ""
     try:
-        result.warnings = json.loads((at / "report.json").read_text())["warnings"]
+        report = json.loads((at / "report.json").read_text())
+        result.warnings, result.limits = report["warnings"], report["limits"]
     except (OSError, ValueError, KeyError):
         pass
     if result.code == 0:
@@ -176,6 +178,50 @@ def pictures(r, head):
     return base64.b64encode(buffer.getvalue()).decode()
 
 
+FIGURES = {"skullSeenShare": "rays that show the skull, part", "skullUnseenMm2": "vault without a skull, mm\u00b2 in one piece",
+           "tissueOutsideShare": "rays that begin in tissue, part (guess)",
+           "tissueOutsideMaskShare": "the same, of the vault (mask)", "brainLevelSpread": "spread of the brain's levels",
+           "innerSkullCm3": "inner skull, cm\u00b3", "dentMm": "dent of the vault, mm",
+           "skullMedianMm": "skull, median, mm", "skullThickMm": "skull, thick parts, mm",
+           "skullThickToThin": "skull, thick by thin", "scalpMedianMm": "scalp, median, mm",
+           "scalpThickMm": "scalp, thick parts, mm"}
+
+
+def limit_curves(runs, file):
+    """A panel for each value that a limit judges: part of the models up to a value, right ones and wrong ones.
+    `runs` are as limits.json has them; those of children, who have limits of their own, are left out."""
+    adults = 950  # least cm3
+    runs = [run_ for run_ in runs if any(each["name"] == "innerSkullCm3" and each["least"] == adults for each in run_["limits"])]
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    plt.rcParams.update({"font.size": 7, "axes.linewidth": 0.5})
+    figure, axes = plt.subplots(len(FIGURES) // 3, 3, figsize=(9, 8))
+    for plot, (name, text) in zip(axes.flat, FIGURES.items()):
+        limits = set()
+        for is_right, colour in ((True, "#2a7f3f"), (False, "#c0392b")):
+            values = []
+            for run_ in runs:
+                if run_["verdict"].startswith("good") != is_right:
+                    continue
+                own = [each for each in run_["limits"] if each["name"] == name and each["value"] is not None]
+                values += [max(each["value"] for each in own)] if own else []
+                limits.update(each[end] for each in own for end in ("least", "most") if each[end] is not None)
+            values.sort()
+            if values:
+                steps = [(n + 1) / len(values) for n in range(len(values))]
+                plot.step([values[0], *values], [0, *steps], where="post", color=colour, linewidth=1.2,
+                          label=f"{'right' if is_right else 'wrong'}, {len(values)}")
+        for limit in limits:
+            plot.axvline(limit, color="#555555", linestyle="--", linewidth=0.8)
+        plot.set_title(text, fontsize=8)
+        plot.set_ylim(0, 1.03)
+        plot.legend(loc="lower right", fontsize=6, frameon=False)
+    figure.tight_layout()
+    figure.savefig(file, facecolor="white")
+    plt.close(figure)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
@@ -222,6 +268,9 @@ def main():
                f"{sum(r.verdict == 'good, warned' for r in results)} right runs warned of")
     print(summary)
     (options.folder / "table.md").write_text("\n".join(lines) + "\n\n" + summary + "\n")
+    runs = [{"head": r.case.name, "from": r.way, "verdict": r.verdict, "limits": r.limits} for r in results if r.code == 0]
+    (options.folder / "limits.json").write_text(json.dumps(runs, indent=1))
+    limit_curves(runs, options.folder / "limits.png")
     (options.folder / "page.html").write_text("\n".join(page))
     return 1 if silent else 0
 

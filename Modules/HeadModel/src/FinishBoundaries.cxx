@@ -202,6 +202,7 @@ HeadBoundaries finished(RawBoundaries raw, const BoundaryOptions& options) {
     result.seenMm = std::move(raw.seenMm);
     result.warnings = std::move(raw.warnings);
     result.doubts = std::move(raw.doubts);
+    result.figures = std::move(raw.figures);
     const auto settle = [&](std::vector<float> part, HeadSurface surface) {
         BoxedSolid solid = boxed(part, raw.grid, 3 * options.smoothingMm, nameOf(surface));
         freeMemory(part);  // a head's worth of memory

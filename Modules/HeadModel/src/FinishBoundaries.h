@@ -26,6 +26,7 @@ struct RawBoundaries {
     std::vector<std::string> notes;
     std::vector<Warning> warnings;
     std::vector<Finding> doubts{};
+    std::vector<HeadFigure> figures{};
 };
 
 /// One raw solid of what belongs to it: its largest piece, closed, with its holes filled (those too

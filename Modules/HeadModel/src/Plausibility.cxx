@@ -231,6 +231,8 @@ private:
                       fixed(necks.front().mm3 / 1000, 1) + " cm3: a leak down a foramen?";
         }
         HeadNote& note = add("necks", "no narrow neck", innerSkull_, !necks.empty(), finding);
+        note.figures = {
+            {"neckReachMm", necks.empty() ? 0 : necks.front().reachMm, {}, kNeckReachMm}};
         for (std::size_t n = 0; n < std::min(necks.size(), kMostPlaces); ++n) {
             note.pointsMm.push_back(necks[n].tipMm);
         }
@@ -347,6 +349,8 @@ private:
             return flat.areaMm2 < UsualHead::kFlatAreaShare * surface.areaMm2;
         });
         std::ranges::stable_sort(flats, {}, &Flat::isLowerFace);
+        double flatMm2 = 0;
+        for (const Flat& flat : flats) flatMm2 = std::max(flatMm2, flat.areaMm2);
         std::string finding;
         for (const Flat& flat : flats) {
             finding += (finding.empty() ? "" : "; ") + std::to_string(flat.vertices.size()) +
@@ -355,6 +359,7 @@ private:
                        fixed(flat.areaMm2 / 100, 0) + " cm2) lie " + flat.where;
         }
         HeadNote& note = add("notCutFlat", "not cut flat", n, !flats.empty(), finding);
+        note.figures = {{"flatShare", flatMm2 / surface.areaMm2, {}, UsualHead::kFlatAreaShare}};
         if (options_.image && options_.areHeadLayers && losesHead(n, flats)) {
             note.warning = "head-cut";
         }
@@ -374,8 +379,10 @@ private:
             }
         }
         std::vector<std::pair<double, VertexId>> bad;
+        double largest = 0;
         for (const VertexId v : surface.used) {
             const double ratio = surface.edgeMm[v] * count[v] / across[v];
+            largest = std::max(largest, ratio);
             if (ratio > UsualHead::kMostEdgeRatio) bad.emplace_back(-ratio, v);
         }
         std::sort(bad.begin(), bad.end());
@@ -389,6 +396,7 @@ private:
                       " mm";
         }
         HeadNote& note = add("edgesInProportion", "edges in proportion", n, !bad.empty(), finding);
+        note.figures = {{"edgeRatio", largest, {}, UsualHead::kMostEdgeRatio}};
         for (std::size_t k = 0; k < std::min(bad.size(), kMostPlaces); ++k) {
             note.pointsMm.push_back(points[bad[k].second]);
         }
@@ -412,6 +420,8 @@ private:
             fixed(cm3, 0) + " cm3" + (isNoted ? "; " : ", ") + usually(isNoted) +
                 fixed(usual_.leastInnerSkullCm3, 0) + " to " + fixed(usual_.mostInnerSkullCm3, 0) +
                 " cm3" + (isNoted && cm3 < usual_.leastInnerSkullCm3 ? adviceForChildren() : ""));
+        note.figures = {
+            {"innerSkullCm3", cm3, usual_.leastInnerSkullCm3, usual_.mostInnerSkullCm3}};
         note.isImpossible = cm3 < UsualHead::kLeastVolumeShare * usual_.leastInnerSkullCm3 ||
                             cm3 > UsualHead::kMostVolumeShare * usual_.mostInnerSkullCm3;
         if (note.isImpossible) {
@@ -437,6 +447,7 @@ private:
                                    " mm: a lesion at the cortex, or brain that was lost?"
                              : ""));
         note.warning = "inner-skull-dented";
+        note.figures = {{"dentMm", *deepest, {}, UsualHead::kMostDentMm}};
         if (isNoted) note.pointsMm.push_back(points[deepest - depth.begin()]);
     }
 
@@ -467,6 +478,7 @@ private:
         if (!coarse.empty()) finding += ", up to " + fixed(-coarse.front().first, 1);
         if (isNoted) finding += ": the layer is not resolved there; more vertices are";
         HeadNote& note = add("edgesAgainstGap", "edges against the gap", n, isNoted, finding);
+        note.figures = {{"coarseShare", share, {}, UsualHead::kEdgesPerGapShare}};
         note.next = n + 1;
         if (isNoted) note.pointsMm.push_back(inner.mesh.points[coarse.front().second]);
     }
@@ -516,6 +528,14 @@ private:
                              : add("scalpThickness", "thickness of the scalp", n, isNoted, finding);
         note.next = n + 1;
         note.warning = "thickness-unusual";
+        if (isSkull) {
+            note.figures = {{"skullMedianMm", median, least, most},
+                            {"skullThickMm", thick, {}, mostAnywhere},
+                            {"skullThickToThin", ratio, {}, UsualHead::kMostSkullRatio}};
+        } else {
+            note.figures = {{"scalpMedianMm", median, least, most},
+                            {"scalpThickMm", thick, {}, mostAnywhere}};
+        }
         note.isImpossible = median > UsualHead::kMostThicknessShare * most;
         if (isNoted) {
             const bool looksAtThin = isThin || (isUneven && !isThick && !isSomewhereThick);
@@ -535,6 +555,7 @@ private:
                        " times as many; the coarser one says how good the model is";
         }
         HeadNote& note = add("vertexCounts", "numbers of vertices match", n, isNoted, finding);
+        note.figures = {{"vertexRatio", ratio, {}, UsualHead::kMostVertexRatio}};
         note.next = n + 1;
     }
 

@@ -208,6 +208,12 @@ void requireBandInSight(const SkullBand& band, bool isGuess, double csfMm, RawBo
                      kMostInTissue = 0.3;
     constexpr double kLeastSeen = 0.2;       // stripped images: 0 to 5 %
     constexpr double kMostUnseenMm2 = 2500;  // ch2 and copies of it: at most 21 cm2; a flap: 37
+    found.figures.push_back({"skullSeenShare", band.seenFraction, kUsuallySeen});
+    found.figures.push_back({"skullUnseenMm2", band.unseenMm2, {}, kMostUnseenMm2});
+    found.figures.push_back(
+        isGuess
+            ? HeadFigure{"tissueOutsideShare", band.tissueFraction, {}, kUsuallyInTissue}
+            : HeadFigure{"tissueOutsideMaskShare", band.upperTissueFraction, {}, kUsuallyOfMask});
     if (band.seenFraction < kLeastSeen) {
         throw InvalidInput("the skull shows on " + percentOf(band.seenFraction) +
                            " of the rays from the brain outwards: " + kSkullStripped);
@@ -261,8 +267,7 @@ void requireBandInSight(const SkullBand& band, bool isGuess, double csfMm, RawBo
 /// Thresholds are made for brains whose levels lie within a third of each other: within the inner
 /// skull of ch2, with noise, a bias field, or an infant's size, quartiles lie 0.28 to 0.30 of the
 /// median apart; with 7 T contrast 0.52, and what is dark is lost.
-void warnOfContrast(const std::vector<float>& innerSkull, const Head& head,
-                    std::vector<Warning>& warnings) {
+void judgeContrast(const std::vector<float>& innerSkull, const Head& head, RawBoundaries& raw) {
     constexpr double kRimMm = 6, kWide = 0.42;
     const Mask deep = eroded(above(innerSkull, kFractionIsovalue), head.grid, kRimMm);
     std::vector<float> levels;
@@ -279,12 +284,14 @@ void warnOfContrast(const std::vector<float>& innerSkull, const Head& head,
     const double middle = quartile(2);
     if (!(middle > 0)) return;
     const double spread = (quartile(3) - quartile(1)) / middle;
+    raw.figures.push_back({"brainLevelSpread", spread, {}, kWide});
     if (spread <= kWide) return;
-    warnings.push_back({"brain-doubtful",
-                        "the brain's levels spread by " + percentOf(spread) +
-                            " between quartiles, some 30 % are usual (the contrast of 7 T, large "
-                            "ventricles?): what is dark may be lost; look at the result, or give a "
-                            "brain mask"});
+    raw.warnings.push_back(
+        {"brain-doubtful",
+         "the brain's levels spread by " + percentOf(spread) +
+             " between quartiles, some 30 % are usual (the contrast of 7 T, large "
+             "ventricles?): what is dark may be lost; look at the result, or give a "
+             "brain mask"});
 }
 
 }  // namespace
@@ -366,7 +373,7 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
     }
     Mask brain = brainOf(sources, head, std::move(guess), raw);
     raw.parts.push_back(innerSkullPart(brain, head, isGuess, options, raw.notes));
-    if (isGuess && !head.isFluidBright) warnOfContrast(raw.parts[0], head, raw.warnings);
+    if (isGuess && !head.isFluidBright) judgeContrast(raw.parts[0], head, raw);
     cutNecks(raw, options);
     if (options.innerSurfaces > 0) {
         raw.inner.push_back(brainSurfacePart(sources,

@@ -18,34 +18,6 @@ SurfaceFacts factsOf(const TriangleMesh& surface) {
     return measureSurface(surface, sizeLimitsOf(Profile::Bem), 1);
 }
 
-Vec3 middleOf(const TriangleMesh& mesh, std::int64_t triangle) {
-    const auto& [a, b, c] = mesh.triangles[triangle];
-    return (1.0 / 3) * (mesh.points[a] + mesh.points[b] + mesh.points[c]);
-}
-
-/// Where to look for what a check found.
-Vec3 placeOf(const Check& check, const SurfaceFacts& facts, const TriangleMesh& mesh) {
-    const TopologyReport& topology = facts.topology;
-    if (check.key == "noSelfIntersections" && facts.intersections.pairCount > 0) {
-        return facts.firstCrossingMm;
-    }
-    if (check.key == "minAngle" && facts.shape.triangles > 0) {
-        return middleOf(mesh, facts.shape.angleDeg.triangleOfMinimum);
-    }
-    if (check.key == "noDuplicateVertices" && !facts.duplicates.vertices.empty()) {
-        return mesh.points[facts.duplicates.vertices.front()];
-    }
-    if (check.key == "noDuplicateTriangles" && !facts.duplicates.triangles.empty()) {
-        return middleOf(mesh, facts.duplicates.triangles.front());
-    }
-    if (check.key == "oneComponent" && topology.components.size() > 1) {
-        return mesh.points[topology.components[1].firstVertex];
-    }
-    if (!topology.examples.empty()) return topology.examples.front().pointMm;
-    const BoundingBox box = boundingBox(mesh);
-    return box.middle();
-}
-
 /// Coordinates in findings are to be read by people: scanner RAS, as the program prints elsewhere.
 std::vector<TriangleMesh> inScannerRas(const std::vector<TriangleMesh>& surfaces) {
     std::vector<TriangleMesh> moved;
@@ -78,7 +50,7 @@ ModelChecks checkHeadSurfaces(std::span<const TriangleMesh> surfaces,
         result.facts.push_back(factsOf(surfaces[n]));
         const SurfaceFacts& facts = result.facts.back();
         for (Check& check : judgeSurface(facts, bemRules())) {
-            const Vec3 place = placeOf(check, facts, surfaces[n]);
+            const Vec3 place = placeOfFinding(check, facts, surfaces[n]);
             result.checks.push_back({bemSurfaceName(n, surfaces.size()), std::move(check), place});
         }
     }

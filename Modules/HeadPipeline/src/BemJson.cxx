@@ -71,6 +71,23 @@ std::vector<ReportedNote> inLps(std::vector<ReportedNote> notes) {
     return notes;
 }
 
+/// What was judged of the head, and by what limits.
+Json limitsJson(const BemModel& model) {
+    Json list = Json::array();
+    const auto add = [&](const HeadFigure& figure, const Json& of) {
+        list.push_back({{"name", figure.key},
+                        {"of", of},
+                        {"value", number(figure.value)},
+                        {"least", orNull(figure.least)},
+                        {"most", orNull(figure.most)}});
+    };
+    for (const HeadFigure& figure : model.figures) add(figure, nullptr);
+    for (const ReportedNote& reported : model.plausibility) {
+        for (const HeadFigure& figure : reported.note.figures) add(figure, reported.subject);
+    }
+    return list;
+}
+
 Json gapJson(const NestedGap& gap) {
     return {{"mm", number(gap.mm)},
             {"innerPointMm", vector(gap.innerPointMm)},
@@ -85,6 +102,7 @@ Json landmarksJson(const BemModel& model) {
     if (!model.electrodes || !model.electrodes->landmarks) return nullptr;
     const Landmarks& l = *model.electrodes->landmarks;
     return {{"origin", model.electrodes->landmarkOrigin},
+            {"pointsIn", frameWord(CoordinateFrame::Lps)},
             {"nasionMm", vector(l.nasionMm)},
             {"leftEarMm", vector(l.leftEarMm)},
             {"rightEarMm", vector(l.rightEarMm)},
@@ -105,6 +123,7 @@ Json electrodesJson(const BemModel& model) {
             {"meanMovedMm", number(e.meanMovedMm)},
             {"farthestMovedMm", number(e.farthestMovedMm)},
             {"farthest", e.areComputed ? Json(nullptr) : Json(e.farthestName)},
+            {"pointsIn", frameWord(CoordinateFrame::Lps)},
             {"points", points}};
 }
 
@@ -249,6 +268,7 @@ Json bemModelJson(const BemModel& model) {
             {"sources", sourcesJson(model)},
             {"leadField", leadFieldJson(model)},
             {"plausibility", notesJson(inLps(model.plausibility))},
+            {"limits", limitsJson(model)},
             {"findings", findings}};
 }
 

@@ -342,6 +342,7 @@ std::vector<TriangleMesh> extractSurfaces(const HeadBoundaries& boundaries, BemM
     model.warnings.insert(model.warnings.end(), boundaries.warnings.begin(),
                           boundaries.warnings.end());
     model.doubts = boundaries.doubts;
+    model.figures = boundaries.figures;
     std::vector<TriangleMesh> surfaces;
     model.seenMm = boundaries.seenMm;
     model.segmented = boundaries.segmented;

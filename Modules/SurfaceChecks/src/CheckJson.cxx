@@ -230,11 +230,12 @@ Json nestingJson(const NestingReport& report, const std::vector<Check>& checks,
 }
 
 std::span<const LengthFigure> lengthFigures() {
-    static constexpr LengthFigure kRows[] = {{"mean", "mean", &DistanceStatistics::meanMm},
-                                             {"rms", "RMS", &DistanceStatistics::rmsMm},
-                                             {"p95", "95 % within", &DistanceStatistics::p95Mm},
-                                             {"p99", "99 % within", &DistanceStatistics::p99Mm},
-                                             {"max", "maximum", &DistanceStatistics::maxMm}};
+    static constexpr LengthFigure kRows[] = {
+        {"mean", "mean", &DistanceStatistics::meanMm},
+        {"rms", "RMS", &DistanceStatistics::rmsMm},
+        {"p95", "95 % within", &DistanceStatistics::p95Mm},
+        {"p99", "99 % within", &DistanceStatistics::p99Mm},
+        {"max", "largest sampled", &DistanceStatistics::maxMm}};
     return kRows;
 }
 

@@ -97,7 +97,7 @@ constexpr CheckRule kSize{
     "size plausible in mm",
     "bem: every side of the bounding box is 50 mm or more (as in MNE), none above 500 mm; else: "
     "the longest side is 1 to 2000 mm; a shorter one, as of a micro-CT, is undecided, and fails "
-    "where `--profile print` is given",
+    "below a micron and where `--profile print` is given",
     true,
     true,
     false};
@@ -318,7 +318,8 @@ private:
         std::string pieces = counted(components, "component") + largestComponents();
         if (rules_.profile == Profile::Print &&
             components > static_cast<std::int64_t>(facts_.solids)) {
-            pieces += "; each is printed: adaptiso-mesh --largest --fill-cavities leaves one";
+            pieces +=
+                "; each is printed; of a scan adaptiso-mesh --largest --fill-cavities makes one";
         }
         addUnless(kOneComponent, components != 1, pieces);
 
@@ -427,9 +428,11 @@ private:
         };
         std::string finding =
             mm(size.extentMm.x) + " x " + mm(size.extentMm.y) + " x " + mm(size.extentMm.z) + " mm";
-        // what is said to be for a printer is no micro-CT
-        const bool mayBeSmall =
-            rules_.profileInUse() != Profile::Bem && rules_.profile != Profile::Print;
+        // what is said to be for a printer is no micro-CT, nor is what is smaller than a micron
+        constexpr double kMicronMm = 1e-3;
+        const double longestMm = std::max({size.extentMm.x, size.extentMm.y, size.extentMm.z});
+        const bool mayBeSmall = rules_.profileInUse() != Profile::Bem &&
+                                rules_.profile != Profile::Print && longestMm >= kMicronMm;
         if (size.verdict == SizeVerdict::TooSmall && mayBeSmall) {
             const std::string unit =
                 size.guess ? ", or in " + std::string(toString(*size.guess)) : std::string();
@@ -574,6 +577,32 @@ std::vector<Check> judgeNesting(const NestingReport& report, const std::string& 
     }
     checks.back().isRequired |= rules.minGapMm.has_value();
     return checks;
+}
+
+Vec3 placeOfFinding(const Check& check, const SurfaceFacts& facts, const TriangleMesh& mesh) {
+    const auto isOf = [&](const CheckRule& rule, bool hasPlace) {
+        return check.key == rule.key && hasPlace;
+    };
+    const auto middleOf = [&](std::int64_t triangle) {
+        const auto& [a, b, c] = mesh.triangles[triangle];
+        return (1.0 / 3) * (mesh.points[a] + mesh.points[b] + mesh.points[c]);
+    };
+    const TopologyReport& topology = facts.topology;
+    if (isOf(kCrossings, facts.intersections.pairCount > 0)) return facts.firstCrossingMm;
+    if (isOf(kLeastAngle, facts.shape.triangles > 0)) {
+        return middleOf(facts.shape.angleDeg.triangleOfMinimum);
+    }
+    if (isOf(kDuplicateVertices, !facts.duplicates.vertices.empty())) {
+        return mesh.points[facts.duplicates.vertices.front()];
+    }
+    if (isOf(kDuplicateTriangles, !facts.duplicates.triangles.empty())) {
+        return middleOf(facts.duplicates.triangles.front());
+    }
+    if (isOf(kOneComponent, topology.components.size() > 1)) {
+        return mesh.points[topology.components[1].firstVertex];
+    }
+    if (!topology.examples.empty()) return topology.examples.front().pointMm;
+    return boundingBox(mesh).middle();
 }
 
 }  // namespace adaptiso

@@ -13,6 +13,7 @@
 #include "adaptiso/Core/Warning.h"
 #include "adaptiso/HeadModel/Finding.h"
 #include "adaptiso/HeadModel/FractionField.h"
+#include "adaptiso/HeadModel/HeadFigure.h"
 #include "adaptiso/HeadModel/SegmentedSkull.h"
 
 namespace adaptiso {
@@ -88,6 +89,7 @@ struct HeadBoundaries {
     std::vector<std::string> notes;     ///< guesses and changes, one line each
     std::vector<Warning> warnings;      ///< doubts about the result
     std::vector<Finding> doubts{};      ///< those of them that have a place (LPS mm)
+    std::vector<HeadFigure> figures{};  ///< of a T1: what was judged
     /// For each solid the places (LPS mm) where the image itself shows its surface: sides of
     /// labels, levels that are passed, ends of the skull's dark band. The rest was closed, filled,
     /// cut, grown or taken as usual. Empty where nobody looked (surfaces).

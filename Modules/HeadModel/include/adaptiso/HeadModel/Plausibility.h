@@ -9,6 +9,7 @@
 
 #include "adaptiso/Core/ImageGeometry.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/HeadModel/HeadFigure.h"
 
 namespace adaptiso {
 
@@ -81,6 +82,7 @@ struct HeadNote {
     std::vector<Vec3> pointsMm{};     ///< where to look; in the surfaces' frame
     /// Code of the warning where what is noted makes a head model doubtful; else empty.
     std::string_view warning{};
+    std::vector<HeadFigure> figures{};  ///< what was judged
 };
 
 struct PlausibilityOptions {

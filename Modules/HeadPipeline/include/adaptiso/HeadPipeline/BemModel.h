@@ -89,7 +89,7 @@ const char* toString(BemSource source);
 struct BemInput {
     std::string file;    ///< without folders; empty: no file
     std::string role;    ///< "t1", "brain mask", "labels", ...
-    std::string format;  ///< "NIfTI-1", "STL (binary)", ...
+    std::string format;  ///< "NIfTI-1", "STL", ...
 };
 
 /// One surface, from dense to final.
@@ -206,6 +206,7 @@ struct BemModel {
     std::vector<ReportedNote> plausibility;  ///< unusual properties of the head
     std::vector<Finding> findings;           ///< why there is no model; points in LPS mm
     std::vector<Finding> doubts{};           ///< as HeadBoundaries has them
+    std::vector<HeadFigure> figures{};       ///< as HeadBoundaries has them
 
     bool hasModel() const { return findings.empty(); }
     /// A failed check is a finding too. \pre one that failed has a point

@@ -149,6 +149,10 @@ bool allHold(const std::vector<Check>& checks);
 /// The checks of one surface.
 std::vector<Check> judgeSurface(const SurfaceFacts& facts, const CheckRules& rules);
 
+/// A place of what a check found, if it has one; else of some defect, else the middle of the box.
+/// \param facts  of `mesh`, which the check judged
+Vec3 placeOfFinding(const Check& check, const SurfaceFacts& facts, const TriangleMesh& mesh);
+
 /// Checks that the surface lies on the isosurface.
 /// \param deviation  empty if the surface has no area to measure
 Check judgeDeviation(const std::optional<DistanceStatistics>& deviation, double voxelMm,
