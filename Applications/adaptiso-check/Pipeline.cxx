@@ -23,6 +23,7 @@
 #include "adaptiso/Core/PortableMath.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/Extraction/Extraction.h"
+#include "adaptiso/Mending/Mend.h"
 #include "adaptiso/MeshIO/MeshFile.h"
 #include "adaptiso/SpanSpace/SpanSpaceIndex.h"
 
@@ -201,7 +202,8 @@ private:
     void warnOfSize(const SurfaceRun& surface) {
         const auto size = std::ranges::find(surface.checks, "plausibleSize", &Check::key);
         const bool isDoubtful = size != surface.checks.end() &&
-                                size->outcome == Outcome::Undecided && surface.facts.size.guess;
+                                size->outcome == Outcome::Undecided &&
+                                surface.facts.size.verdict != SizeVerdict::Unknown;
         if (isDoubtful) {
             run_.warnings.push_back({"size-doubtful", size->finding, baseName(surface.file)});
         }
@@ -402,6 +404,19 @@ bool isForMending(const SurfaceRun& surface) {
            });
 }
 
+/// --max-hole for a border that may be wider than what adaptiso-mend closes by itself: half its
+/// length is the most that it can span.
+std::string holeOption(const SurfaceFacts& facts) {
+    constexpr double kLeft = 0.99;  // new surface reaches beyond the border a little
+    if (facts.holes.empty()) return {};
+    const double spanMm = facts.holes.front().lengthMm / 2;
+    const double diagonalMm = norm(facts.size.extentMm);
+    if (spanMm < kLeft * MendOptions::kHoleOfDiagonal * diagonalMm) return {};
+    const double enoughMm = spanMm / kLeft;
+    return " --max-hole " +
+           (enoughMm > 10 ? formatNumber(std::ceil(enoughMm)) : formatBound(enoughMm, 2));
+}
+
 /// \param more  options of adaptiso-mend, a blank before each
 std::string mendingCommand(const fs::path& file, const std::string& more) {
     const std::string name = file.filename().string();
@@ -417,7 +432,9 @@ std::string mendingCommand(const fs::path& file, const std::string& more) {
 /// the first that crosses the surface inside it or lies too near to it. Empty if there is neither.
 std::string mendingCommand(const CheckRun& run) {
     const auto found = std::ranges::find_if(run.surfaces, isForMending);
-    if (found != run.surfaces.end()) return mendingCommand(found->file, "");
+    if (found != run.surfaces.end()) {
+        return mendingCommand(found->file, holeOption(found->facts));
+    }
     for (const NestingRun& pair : run.nesting) {
         const NestingRelation relation = pair.report.relation;
         if (relation != NestingRelation::Nested && relation != NestingRelation::Crossing) continue;

@@ -389,7 +389,8 @@ private:
         clusters.tell("vertex that is there twice" + in_, check->isRequired, spots_);
     }
 
-    /// All but the largest piece, and those that are the wrong way round.
+    /// Loose pieces, which are all but the largest one, or one for each of the file's solids; and
+    /// those that are the wrong way round.
     void addComponents() {
         std::vector<SurfaceComponent> pieces = surface_.facts.topology.components;
         const Check* outward = failed(surface_.checks, "outward");
@@ -407,10 +408,13 @@ private:
         if (!check || surface_.facts.isSoup()) return;
         std::stable_sort(pieces.begin(), pieces.end(),
                          [](const auto& a, const auto& b) { return a.triangles > b.triangles; });
-        for (std::size_t n = 1; n < std::min(pieces.size(), kMostSpotsOfAKind); ++n) {
+        const std::size_t solids = surface_.facts.solids;
+        const std::size_t end = std::min(pieces.size(), solids - 1 + kMostSpotsOfAKind);
+        for (std::size_t n = solids; n < end; ++n) {
             spots_.push_back(
                 {"loose piece of " + formatCount(pieces[n].triangles) + " triangles" + in_,
-                 mesh_.points[pieces[n].firstVertex], check->isRequired, static_cast<int>(n) - 1});
+                 mesh_.points[pieces[n].firstVertex], check->isRequired,
+                 static_cast<int>(n - solids)});
         }
     }
 
@@ -519,7 +523,10 @@ std::string saysText(const CheckRun& run) {
         if (!failed.empty()) addPart(text, (subject.empty() ? "" : subject + ": ") + failed, "; ");
     };
     for (const SurfaceRun& surface : run.surfaces) {
-        add(run.surfaces.size() == 1 ? "" : baseName(surface.file), surface.checks);
+        const std::string name = run.surfaces.size() == 1 ? "" : baseName(surface.file);
+        add(name, surface.checks);
+        if (!surface.error.empty())
+            addPart(text, (name.empty() ? "" : name + ": ") + "not read", "; ");
     }
     for (const NestingRun& pair : run.nesting) add(pairName(run, pair), pair.checks);
     return text.empty() ? "all that is required holds" : text;

@@ -272,6 +272,16 @@ class Refusals(MendTest):
         self.mend("cup.off", "--max-error", 1, "--max-hole", 120, "-o", "closed.off")
         self.assertTrue(self.check("closed.off")["passed"])
 
+    def test_the_command_of_adaptiso_check_closes_a_wide_hole(self):
+        for name, mesh, width in (("cup.off", cup(BALL, 20), r" --max-hole 129"),
+                                  ("chip.off", (BALL[0], BALL[1][1:]), r" --max-hole 8\.\d+")):
+            self.write(name, mesh)
+            done = subprocess.run([BIN / "adaptiso-check", name], cwd=self.folder, text=True, capture_output=True)
+            command = re.search(rf"adaptiso-mend {name}{width} -o mended-{name}$", done.stdout, re.MULTILINE)
+            self.assertTrue(command, done.stdout)
+            self.mend(*command[0].split()[1:])
+            self.assertTrue(self.check(f"mended-{name}")["passed"])
+
     def test_a_sheet_that_is_dropped_is_warned_of(self):
         square = [(50, 0, 0), (90, 0, 0), (90, 40, 0), (50, 40, 0)]
         sheet = square + square, [(0, 1, 2), (0, 2, 3), (6, 5, 4), (7, 6, 4)]  # both its sides
@@ -287,7 +297,7 @@ class Refusals(MendTest):
     def test_boxes_that_share_an_edge_by_place_are_none_in_stl(self):
         self.write("touch.off", together(cube((0, 0, 0), (1, 1, 1)), cube((1, 1, 0), (2, 2, 1))))
         self.mend("touch.off", "-o", "same.off")
-        self.stays_out(BAD_INPUT, "out.stl: STL .binary. joins points .* no oriented 2-manifold; write .vtp or .ply",
+        self.stays_out(BAD_INPUT, "out.stl: STL joins points .* no oriented 2-manifold; write .vtp or .ply",
                        "touch.off", "-o", "out.stl")
 
     def test_usage_and_bad_input(self):

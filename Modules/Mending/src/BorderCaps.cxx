@@ -74,27 +74,77 @@ std::vector<Triangle> leastArea(const std::vector<Vec3>& points, const std::vect
     return triangles;
 }
 
+/// The plane across a ring's mean normal: the ring runs counter-clockwise in it.
+struct RingPlane {
+    Vec3 origin, normal, u, v;  ///< of length 1; the normal 0 where the ring has none
+    double area2 = 0;
+
+    RingPlane(const std::vector<Vec3>& points, const std::vector<VertexId>& ring)
+        : origin(points[ring[0]]) {
+        for (std::size_t n = 0; n < ring.size(); ++n) {
+            normal += cross(points[ring[n]] - origin, points[ring[(n + 1) % ring.size()]] - origin);
+        }
+        area2 = norm(normal);
+        normal = normalized(normal);
+        Vec3 along;
+        along[std::abs(normal.x) < 0.6 ? 0 : 1] = 1;
+        u = normalized(cross(along, normal));
+        v = cross(normal, u);
+    }
+
+    Point2 operator()(const Vec3& p) const { return {dot(u, p - origin), dot(v, p - origin)}; }
+};
+
 /// A ring seen along its mean normal, counter-clockwise. Empty where it has none.
 std::vector<Point2> seenFlat(const std::vector<Vec3>& points, const std::vector<VertexId>& ring) {
-    Vec3 normal;
-    const Vec3& origin = points[ring[0]];
-    for (std::size_t n = 0; n < ring.size(); ++n) {
-        normal += cross(points[ring[n]] - origin, points[ring[(n + 1) % ring.size()]] - origin);
-    }
-    normal = normalized(normal);
-    if (normal == Vec3{}) return {};
-    Vec3 along;
-    along[std::abs(normal.x) < 0.6 ? 0 : 1] = 1;
-    const Vec3 u = normalized(cross(along, normal)), v = cross(normal, u);
+    const RingPlane plane(points, ring);
+    if (plane.normal == Vec3{}) return {};
     std::vector<Point2> flat;
     flat.reserve(ring.size());
-    for (const VertexId p : ring) {
-        flat.push_back({dot(u, points[p] - origin), dot(v, points[p] - origin)});
-    }
+    for (const VertexId p : ring) flat.push_back(plane(points[p]));
     return flat;
 }
 
 using EdgeSet = std::unordered_set<std::uint64_t>;  ///< by endsKey()
+
+/// Turns edges within a plane cap that the mesh has already. \return false where one is left
+bool turnTaken(const std::vector<Vec3>& points, const Vec3& normal, const EdgeSet& taken,
+               std::vector<Triangle>& triangles) {
+    constexpr int kMostRounds = 8;
+    for (int round = 0; round < kMostRounds; ++round) {
+        bool isLeft = false;
+        std::unordered_map<std::uint64_t, std::size_t> first;
+        std::vector<std::uint8_t> isChanged(triangles.size());
+        for (std::size_t n = 0; n < triangles.size(); ++n) {
+            for (std::size_t i = 0; i < 3 && isChanged[n] == 0; ++i) {
+                const VertexId a = triangles[n][i], b = triangles[n][(i + 1) % 3],
+                               c = triangles[n][(i + 2) % 3];
+                const auto [before, isFirst] = first.try_emplace(endsKey(a, b), n);
+                if (isFirst || !taken.contains(endsKey(a, b))) continue;
+                isLeft = true;
+                Triangle& other = triangles[before->second];
+                if (isChanged[before->second] != 0) continue;
+                VertexId d = other[0];
+                for (const VertexId v : other) {
+                    if (v != a && v != b) d = v;
+                }
+                const Triangle one{a, d, c}, two{d, b, c};
+                const auto isUp = [&](const Triangle& t) {
+                    constexpr double kFlat = 1e-9;
+                    const Corners corners{points[t[0]], points[t[1]], points[t[2]]};
+                    return dot(normal, areaVector2(corners[0], corners[1], corners[2])) >
+                           kFlat * norm(boxOf(corners).size());
+                };
+                if (taken.contains(endsKey(c, d)) || !isUp(one) || !isUp(two)) continue;
+                triangles[n] = one;
+                other = two;
+                isChanged[n] = isChanged[before->second] = 1;
+            }
+        }
+        if (!isLeft) return true;
+    }
+    return false;
+}
 
 /// Closes rings by the least area of triangles that cross no other.
 class ClearCaps {
@@ -190,6 +240,119 @@ std::vector<Triangle> flatCap(const TriangleMesh& mesh, const std::vector<Vertex
     if (!haveArea()) triangles.clear();
     return triangles;
 }
+
+/// Rings in one plane, the one round the others first: a cut through a solid with cavities.
+class RingGroups {
+public:
+    RingGroups(const std::vector<Vec3>& points, const std::vector<std::vector<VertexId>>& rings)
+        : points_(points), rings_(rings) {
+        for (const auto& ring : rings) planes_.emplace_back(points, ring);
+    }
+
+    /// The groups of two rings or more, by their numbers. What lies in a cavity's ring is another
+    /// solid, with a group of its own.
+    std::vector<std::vector<std::size_t>> groups() const {
+        std::vector<std::optional<std::size_t>> parents(rings_.size());
+        for (std::size_t inner = 0; inner < rings_.size(); ++inner) {
+            std::optional<std::size_t>& least = parents[inner];
+            for (std::size_t outer = 0; outer < rings_.size(); ++outer) {
+                if (least && planes_[outer].area2 >= planes_[*least].area2) continue;
+                if (isWithin(inner, outer)) least = outer;
+            }
+        }
+        const auto isCavity = [&](std::size_t ring) {
+            bool isOdd = false;
+            for (auto at = parents[ring]; at; at = parents[*at]) isOdd = !isOdd;
+            return isOdd;
+        };
+        std::vector<std::vector<std::size_t>> groups;
+        for (std::size_t outer = 0; outer < rings_.size(); ++outer) {
+            if (isCavity(outer)) continue;
+            std::vector<std::size_t> group{outer};
+            for (std::size_t inner = 0; inner < rings_.size(); ++inner) {
+                if (parents[inner] == outer) group.push_back(inner);
+            }
+            const bool areOpposite =
+                std::all_of(group.begin() + 1, group.end(), [&](std::size_t inner) {
+                    return dot(planes_[inner].normal, planes_[outer].normal) < 0;
+                });
+            if (group.size() > 1 && areOpposite) groups.push_back(std::move(group));
+        }
+        return groups;
+    }
+
+    /// Triangles between the first and the others. Empty where the rings bound no plane region, or
+    /// an edge within it is the mesh's.
+    std::vector<Triangle> between(const std::vector<std::size_t>& group,
+                                  const EdgeSet& taken) const {
+        const RingPlane& plane = planes_[group.front()];
+        std::vector<Vec3> flat;  // as the first is seen
+        std::vector<VertexId> numbers;
+        std::vector<std::vector<VertexId>> loops;
+        for (const std::size_t n : group) {
+            loops.emplace_back();
+            for (const VertexId v : rings_[n]) {
+                const Point2 seen = plane(points_[v]);
+                loops.back().push_back(std::ssize(flat));
+                flat.push_back({seen[0], seen[1], 0});
+                numbers.push_back(v);
+            }
+        }
+        BoundingBox box{flat.front(), flat.front()};
+        for (const Vec3& p : flat) box.add(p);
+        const Vec3 &low = box.minimum, &high = box.maximum;
+        PlanarFiller filler;
+        const auto filled = filler.fill(flat, {low, {high.x, low.y, 0}, {low.x, high.y, 0}}, loops);
+        const std::size_t due = flat.size() + 2 * group.size() - 4;
+        if (!filled || filled->size() != 1 || filled->front().triangles.size() != due) return {};
+        std::vector<Triangle> triangles = filled->front().triangles;
+        for (Triangle& t : triangles) {
+            for (VertexId& v : t) v = numbers[static_cast<std::size_t>(v)];
+        }
+        if (!turnTaken(points_, plane.normal, taken, triangles)) triangles.clear();
+        return triangles;
+    }
+
+private:
+    /// Their planes are the same, more or less, and the inner one begins in the outer one.
+    bool isWithin(std::size_t inner, std::size_t outer) const {
+        constexpr double kParallel = 0.9;
+        const RingPlane &own = planes_[inner], &plane = planes_[outer];
+        if (own.area2 >= plane.area2 || std::abs(dot(own.normal, plane.normal)) < kParallel)
+            return false;
+        const auto heights = [&](const std::vector<VertexId>& ring) {
+            double low = std::numeric_limits<double>::infinity(), high = -low;
+            for (const VertexId v : ring) {
+                const double height = dot(plane.normal, points_[v] - plane.origin);
+                low = std::min(low, height);
+                high = std::max(high, height);
+            }
+            return std::array{low, high};
+        };
+        constexpr double kRounding = 1e-5;  // of the ring's width
+        const double roundingMm = kRounding * std::sqrt(plane.area2);
+        const auto a = heights(rings_[inner]), b = heights(rings_[outer]);
+        if (a[0] > b[1] + roundingMm || b[0] > a[1] + roundingMm) return false;
+        const Point2 at = plane(points_[rings_[inner][0]]);
+        const std::vector<VertexId>& ring = rings_[outer];
+        bool isIn = false;
+        Point2 before = plane(points_[ring.back()]);
+        for (const VertexId v : ring) {
+            const Point2 next = plane(points_[v]);
+            const double along = (at[1] - before[1]) / (next[1] - before[1]);
+            if ((before[1] > at[1]) != (next[1] > at[1]) &&
+                at[0] < before[0] + along * (next[0] - before[0])) {
+                isIn = !isIn;
+            }
+            before = next;
+        }
+        return isIn;
+    }
+
+    const std::vector<Vec3>& points_;
+    const std::vector<std::vector<VertexId>>& rings_;
+    std::vector<RingPlane> planes_;
+};
 
 /// Which way a border goes on where it meets itself.
 class BorderTurns {
@@ -295,8 +458,26 @@ bool addCaps(MendInput& input, bool isByArea) {
     std::optional<ClearCaps> clear;
     std::uint32_t caps = input.capOf.empty() ? 0 : input.capOf.back() + 1;
     const std::uint32_t before = caps;
-    for (const std::vector<VertexId>& ring : rings) {
-        if (ring.size() < 3 || ring.size() > kMostOfRing) continue;
+    const auto add = [&](const std::vector<Triangle>& triangles) {
+        for (const auto& [a, b, c] : triangles) {
+            taken.insert({endsKey(a, b), endsKey(b, c), endsKey(c, a)});
+        }
+        mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+        input.capOf.insert(input.capOf.end(), triangles.size(), caps++);
+    };
+    std::vector<std::uint8_t> isClosed(rings.size());
+    if (!isByArea) {
+        const RingGroups nested(mesh.points, rings);
+        for (const std::vector<std::size_t>& group : nested.groups()) {
+            const std::vector<Triangle> triangles = nested.between(group, taken);
+            if (triangles.empty()) continue;
+            for (const std::size_t n : group) isClosed[n] = 1;
+            add(triangles);
+        }
+    }
+    for (std::size_t n = 0; n < rings.size(); ++n) {
+        const std::vector<VertexId>& ring = rings[n];
+        if (isClosed[n] != 0 || ring.size() < 3 || ring.size() > kMostOfRing) continue;
         std::vector<Triangle> triangles;
         if (!isByArea) {
             triangles = flatCap(mesh, ring, taken);
@@ -304,12 +485,7 @@ bool addCaps(MendInput& input, bool isByArea) {
             if (!clear) clear.emplace(mesh);
             triangles = clear->close(ring, taken);
         }
-        if (triangles.empty()) continue;
-        for (const auto& [a, b, c] : triangles) {
-            taken.insert({endsKey(a, b), endsKey(b, c), endsKey(c, a)});
-        }
-        mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
-        input.capOf.insert(input.capOf.end(), triangles.size(), caps++);
+        if (!triangles.empty()) add(triangles);
     }
     return caps != before;
 }

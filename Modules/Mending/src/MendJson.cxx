@@ -81,7 +81,8 @@ Json mendPlacesJson(const MendStatistics& statistics) {
         for (const MendedPlace& place : statistics.*row.places) {
             list.push_back({{"middleMm", vector(place.middleMm)},
                             {"spanMm", number(place.spanMm)},
-                            {"areaMm2", number(place.areaMm2)}});
+                            {"areaMm2", number(place.areaMm2)},
+                            {"triangles", place.triangles}});
         }
         json[std::string(row.key)] = std::move(list);
     }
@@ -93,14 +94,22 @@ std::vector<std::string> mendPlaceTexts(const MendStatistics& statistics) {
     for (const PlacesRow& row : kPlaces) {
         const std::vector<MendedPlace>& places = statistics.*row.places;
         if (places.empty()) continue;
+        constexpr std::int64_t kMany = 100'000;
         double area = 0;
-        for (const MendedPlace& place : places) area += place.areaMm2;
+        std::int64_t triangles = 0;
+        for (const MendedPlace& place : places) {
+            area += place.areaMm2;
+            triangles += place.triangles;
+        }
+        const bool isFine = row.places == &MendStatistics::filled && triangles > kMany;
         const MendedPlace& widest = places.front();
-        texts.push_back(counted(std::ssize(places), row.one, row.many) + ", " +
-                        formatMeasure(area) + " mm2; the widest spans " +
-                        formatMeasure(widest.spanMm) + " mm, around " +
-                        formatShort(widest.middleMm.x) + ", " + formatShort(widest.middleMm.y) +
-                        ", " + formatShort(widest.middleMm.z));
+        texts.push_back(
+            counted(std::ssize(places), row.one, row.many) + ", " + formatMeasure(area) +
+            " mm2; the widest spans " + formatMeasure(widest.spanMm) + " mm, around " +
+            formatShort(widest.middleMm.x) + ", " + formatShort(widest.middleMm.y) + ", " +
+            formatShort(widest.middleMm.z) +
+            (isFine ? "; " + formatCount(triangles) + " triangles, fewer with a larger --max-error"
+                    : ""));
     }
     return texts;
 }

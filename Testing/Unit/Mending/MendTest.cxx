@@ -108,7 +108,33 @@ TEST(Mend, ClosesAHoleOfOneTriangle) {
     EXPECT_EQ(mended.statistics.keptTriangles, 1279);
 }
 
-/// A slit three quarters round the ball, whose border crosses itself seen from anywhere.
+/// A box with a cavity in which a box stands, all open at the top, and another one beside: a scan
+/// that was cut by a plane.
+TEST(Mend, ClosesACutThroughCavitiesByItsCorners) {
+    const auto openBox = [](const Vec3& low, const Vec3& high, bool isCavity) {
+        TriangleMesh box = cubeMesh(low, high);
+        std::erase_if(box.triangles, [&](const Triangle& t) {
+            return std::ranges::all_of(t, [&](VertexId v) { return box.points[v].z == high.z; });
+        });
+        for (Triangle& t : box.triangles) {
+            if (isCavity) std::swap(t[1], t[2]);
+        }
+        return box;
+    };
+    const TriangleMesh cut =
+        merged({openBox({0, 0, 0}, {10, 8, 6}, false), openBox({1, 1, 1}, {6, 7, 6}, true),
+                openBox({2, 2, 2}, {4, 4, 6}, false), openBox({7, 1, 1}, {9, 7, 6}, true)});
+    MendOptions options;
+    options.maxHoleMm = 20;
+    const Mended mended = mend(cut, options);
+    expectMended(mended);
+    // a plane with two holes, 12 corners, and the box in the cavity
+    EXPECT_EQ(mended.mesh.triangles.size(), cut.triangles.size() + 14 + 2);
+    EXPECT_EQ(mended.statistics.cells, 0);
+    EXPECT_EQ(mended.statistics.filled.size(), 2u);
+    EXPECT_NEAR(enclosedVolume(mended.mesh), 480 - 150 + 16 - 60, 1e-9);
+}
+
 TEST(Mend, DropsTrianglesThatNameNoPoint) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     const TriangleMesh ball = bare(icosphere(3, {}, 40));
@@ -148,6 +174,7 @@ TEST(Mend, DropsTrianglesThatNameNoPoint) {
     EXPECT_THROW(mend(broken, {}), InvalidInput);
 }
 
+/// A slit three quarters round the ball, whose border crosses itself seen from anywhere.
 TEST(Mend, ClosesABentSlitByTheCornersOfItsBorder) {
     TriangleMesh ball = bare(icosphere(3));
     std::erase_if(ball.triangles, [&](const Triangle& t) {
