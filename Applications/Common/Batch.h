@@ -22,6 +22,7 @@ struct BatchItem {
     std::vector<std::filesystem::path> inputs;  ///< one, or the surfaces of one head
     std::filesystem::path folder{};             ///< for outputs and record
     std::string fault{};                        ///< why it fails without being run; may be empty
+    std::vector<std::string> options{};         ///< of this one alone, as BatchOptions::runOptions
 };
 
 /// The program that a batch runs.

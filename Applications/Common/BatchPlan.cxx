@@ -87,7 +87,8 @@ void checkOptions(const BatchProgram& program, const BatchOptions& batch,
         require(name != kOutputOption || batch.outputFolder.empty() || staysBelow(value),
                 name + " " + value + ": must be a name below --output-dir");
         const fs::path folder = fs::path(value).parent_path();
-        if (name == kOutputOption && !folder.empty() && !holdsName(folder)) {
+        const bool isFile = name == kOutputOption || name == "--report";
+        if (isFile && !folder.empty() && !holdsName(folder)) {
             checkOutput(batch.outputFolder / value);  // once for all inputs
         }
         if (holdsName(value) || items.size() == 1) continue;
@@ -115,7 +116,8 @@ void printReasons(std::span<const SummaryReason> reasons, const std::string& wor
     }
 }
 
-/// The command that makes the page again, without folders, which may name a patient.
+/// The command that makes the page again. Of folders, which may name a patient, it has none, or
+/// FOLDER in the place of them.
 std::string commandOf(const BatchProgram& program, const BatchOptions& batch) {
     std::string words = program.name;
     const auto lastOf = [](const fs::path& path) {
@@ -129,7 +131,7 @@ std::string commandOf(const BatchProgram& program, const BatchOptions& batch) {
     for (const std::string& option : batch.runOptions) {
         const auto [name, value] = split(option);
         const bool isPath = value.find('/') != std::string::npos;
-        words += " " + shellQuoted(isPath ? name + "=" + lastOf(value) : option);
+        words += " " + shellQuoted(isPath ? name + "=FOLDER/" + lastOf(value) : option);
     }
     add("--output-dir", batch.outputFolder);
     add("--summary", batch.summary);
@@ -192,7 +194,9 @@ std::vector<PlannedRun> planRuns(const BatchProgram& program, std::vector<BatchI
         std::string output =
             replaced(program.defaultOutput, "{file}", item.inputs.front().filename().string());
         std::vector<std::string> surfaceValues;
-        for (const std::string& option : batch.runOptions) {
+        std::vector<std::string> options = batch.runOptions;
+        options.insert(options.end(), item.options.begin(), item.options.end());
+        for (const std::string& option : options) {
             const auto [name, pattern] = split(option);
             const std::string value = replaced(pattern, kName, item.name);
             if (name == kOutputOption) {

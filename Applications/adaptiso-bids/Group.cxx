@@ -377,7 +377,7 @@ std::string withoutFoldersInList(const std::string& list) {
         const std::size_t value = item.find('=') + 1;  // 0: a value alone
         const bool isPath = item.find('/', value) != std::string::npos;
         if (begin > 0) text += ",";
-        text += isPath ? item.substr(0, value) + baseName(item.substr(value)) : item;
+        text += isPath ? item.substr(0, value) + "FOLDER/" + baseName(item.substr(value)) : item;
     }
     return text;
 }
@@ -403,7 +403,7 @@ std::string wordsOf(const BidsOptions& options) {
     return words;
 }
 
-/// The group level's command, without folders, which may name a patient.
+/// The group level's command, with FOLDER in the place of folders, which may name a patient.
 std::string commandOf(const BidsOptions& options, bool areFromRecords) {
     std::string words = std::string(kProgram) + " BIDS_DIR OUT_DIR group";
     for (const std::string& label : options.participants) words += " --participant-label " + label;
@@ -597,6 +597,9 @@ int runGroup(BidsOptions options, const ChosenSubjects& chosen) {
     summary.program = std::string(kProgram) + " " + programVersion();
     summary.command = commandOf(options, areFromRecords);
     summary.outliers = options.outliers;
+    for (const Warning& warning : chosen.warnings) {
+        summary.notes.push_back(warning.file + ": " + warning.text);
+    }
     write("summary.html", summaryPage(summary, options.output / "summary.html"));
     Verdict verdict{missing.empty() ? kExitOk : kExitCheckFailed};
     if (missing.empty()) verdict.failStrict(common, chosen.warnings, "");

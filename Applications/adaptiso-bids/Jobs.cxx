@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -9,6 +10,9 @@
 #include "Common/RunApp.h"
 #include "Common/UsageWords.h"
 #include "Dataset.h"
+#include "SideFiles.h"
+#include "adaptiso/Core/Errors.h"
+#include "adaptiso/Core/FoundFiles.h"
 #include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/MeshIO/Formats.h"
@@ -256,8 +260,33 @@ Json requestOf(const BidsOptions& options) {
     return request;
 }
 
+namespace {
+
+/// Ages of children by participants.tsv, where the options have none.
+std::map<std::string, double> childrenOf(const BidsOptions& options) {
+    constexpr double kAdultYears = 18;
+    std::map<std::string, double> ages;
+    const std::string wanted = options.makes("bem") ? "," + options.wanted.at("bem") : ",age=";
+    if (wanted.find(",age=") != std::string::npos) return ages;
+    const auto text = [&](const char* name) {
+        return readFoundFile(options.dataset / name, options.dataset).value_or("");
+    };
+    if (const std::string list = text("participants.tsv"); !list.empty()) {
+        try {
+            ages = agesIn(list, text("participants.json"));
+        } catch (const FileError&) {
+            ages.clear();  // which is warned of
+        }
+    }
+    std::erase_if(ages, [&](const auto& each) { return each.second >= kAdultYears; });
+    return ages;
+}
+
+}  // namespace
+
 std::vector<Job> findJobs(const BidsOptions& options, const std::vector<fs::path>& subjects) {
     std::vector<Job> jobs;
+    const std::map<std::string, double> children = childrenOf(options);
     for (const std::string product : kProducts) {
         if (product == "check" || !options.makes(product)) continue;
         Job& job = jobs.emplace_back(newJob(options, product));
@@ -272,6 +301,11 @@ std::vector<Job> findJobs(const BidsOptions& options, const std::vector<fs::path
             std::vector<BatchItem> found =
                 bidsImagesOf(root / name, options.sessions, options.output / name, images);
             if (found.empty()) job.without.push_back(name.string());
+            const auto child = children.find(name.string());
+            for (BatchItem& item : found) {
+                if (product != "bem" || child == children.end()) break;
+                item.options.push_back("--age=" + formatNumber(child->second));
+            }
             std::ranges::move(found, std::back_inserter(items));
         }
         job.runs = planRuns(job.program, std::move(items), job.batch, options.common);

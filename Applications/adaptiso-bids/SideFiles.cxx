@@ -3,10 +3,13 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <charconv>
+#include <functional>
 #include <span>
 
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ParseJson.h"
+#include "adaptiso/Core/Text.h"
 #include "adaptiso/Core/TextCells.h"
 #include "adaptiso/Core/TextLines.h"
 #include "adaptiso/Json/Json.h"
@@ -138,7 +141,13 @@ bool BidsIgnore::contains(const fs::path& path) const {
     return isIgnored;
 }
 
-std::set<std::string> participantsIn(std::string_view text) {
+namespace {
+
+/// Calls take(participant, cell of the column, empty where there is none) for each line of
+/// participants.tsv. \throws FileError
+void forEachParticipant(
+    std::string_view text, std::string_view wanted,
+    const std::function<void(const std::string& participant, const std::string& cell)>& take) {
     requireText(text);
     TextLines lines(text);
     const std::string_view first = lines.next().value_or("");
@@ -147,18 +156,42 @@ std::set<std::string> participantsIn(std::string_view text) {
         return cellsOf(line, separator).value_or(std::vector<std::string>());
     };
     const std::vector<std::string> header = cells(first);
-    const auto column = std::ranges::find(header, "participant_id") - header.begin();
-    if (column == std::ssize(header)) {
-        throw FileError("its first line names no column 'participant_id'");
-    }
-    std::set<std::string> listed;
+    const auto columnOf = [&](std::string_view name) {
+        return static_cast<std::size_t>(std::ranges::find(header, name) - header.begin());
+    };
+    const std::size_t id = columnOf("participant_id"), column = columnOf(wanted);
+    if (id == header.size()) throw FileError("its first line names no column 'participant_id'");
     while (const auto line = lines.next()) {
         const std::vector<std::string> row = cells(*line);
-        if (column >= std::ssize(row)) continue;
-        const std::string& id = row[static_cast<std::size_t>(column)];
-        if (!isMissing(id)) listed.insert(withPrefix(id, "sub-"));
+        if (id >= row.size() || isMissing(row[id])) continue;
+        take(withPrefix(row[id], "sub-"), column < row.size() ? row[column] : std::string());
     }
+}
+
+}  // namespace
+
+std::set<std::string> participantsIn(std::string_view text) {
+    std::set<std::string> listed;
+    forEachParticipant(text, "participant_id",
+                       [&](const std::string& id, const std::string&) { listed.insert(id); });
     return listed;
+}
+
+std::map<std::string, double> agesIn(std::string_view text, std::string_view description) {
+    constexpr double kMostYears = 120;
+    std::map<std::string, double> ages;
+    const auto json = parseJson<Json>(description);
+    const Json age = json.is_object() ? json.value("age", Json()) : Json();
+    const Json unit = age.is_object() ? age.value("Units", Json()) : Json();
+    if (unit.is_string() && !lowerCase(unit.get<std::string>()).starts_with("year")) return ages;
+    forEachParticipant(text, "age", [&](const std::string& id, const std::string& cell) {
+        double years = -1;
+        const char* const end = cell.data() + cell.size();
+        const auto [last, error] = std::from_chars(cell.data(), end, years);
+        const bool isNumber = error == std::errc() && last == end;
+        if (isNumber && years >= 0 && years <= kMostYears) ages[id] = years;
+    });
+    return ages;
 }
 
 std::string missingKeyOf(std::string_view description) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -34,6 +35,11 @@ private:
 /// participant_id in the text of participants.tsv, each with "sub-".
 /// \throws FileError  it is no text, or has no such column
 std::set<std::string> participantsIn(std::string_view text);
+
+/// The column "age" of participants.tsv in years, by participant_id with "sub-"; those without a
+/// number are left out. \param description  the text of participants.json, which may name another
+/// unit: nothing is then known; may be empty. \throws FileError  as participantsIn()
+std::map<std::string, double> agesIn(std::string_view text, std::string_view description);
 
 /// "Name" or "BIDSVersion" where the text of dataset_description.json lacks it; empty if it has
 /// both. \throws FileError  it is no text

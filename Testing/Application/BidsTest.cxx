@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "Common/RunApp.h"
 #include "adaptiso-bids/Jobs.h"
 #include "adaptiso-bids/QualityTable.h"
+#include "adaptiso-bids/SideFiles.h"
 
 namespace adaptiso::bids {
 namespace {
@@ -18,6 +20,18 @@ TEST(BidsLabel, HasLettersAndDigitsAlone) {
     EXPECT_EQ(bidsLabel("1e-07"), "1em07");
     EXPECT_EQ(bidsLabel("1e+20"), "1e20");
     EXPECT_EQ(bidsLabel("auto"), "auto");
+}
+
+TEST(AgesIn, AreNumbersOfYears) {
+    const std::string table =
+        "participant_id\tage\tsex\nsub-01\t8\tF\n02\t0.5\tM\nsub-03\tn/a\nsub-04\t89+\n"
+        "sub-05\t-1\nsub-06\t300\nsub-07\n\t9\n";
+    const std::map<std::string, double> ages{{"sub-01", 8}, {"sub-02", 0.5}};
+    EXPECT_EQ(agesIn(table, ""), ages);
+    EXPECT_EQ(agesIn(table, R"({"age": {"Units": "years"}})"), ages);
+    EXPECT_EQ(agesIn(table, R"({"sex": {}})"), ages);
+    EXPECT_TRUE(agesIn(table, R"({"age": {"Units": "months"}})").empty());
+    EXPECT_TRUE(agesIn("participant_id\tsex\nsub-01\tF\n", "").empty());
 }
 
 TEST(QualityTable, HasARowOfCellsForEveryColumnThatTheDictionaryNames) {

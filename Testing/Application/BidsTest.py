@@ -182,6 +182,22 @@ class Participants(BidsTest):
         kept = {each["file"] for each in json.loads(record.read_text())["inputs"]}
         self.assertEqual(kept, {"sub-01_T1w.nii", "cap.tsv"})
 
+    def test_heads_of_children_are_made_by_the_age_of_participants_tsv(self):
+        self.path("study/participants.tsv").write_text("participant_id\tage\nsub-01\t8.5\nsub-02\t30\nsub-77\t9\n")
+
+        def ages(*options):
+            what = ("--bem", "--bem-options", ",".join(("vertices=162", *options)), "--no-pictures")
+            self.bids(CHECK_FAILED, "participant", "--participant-label", "01", "02", what=what)
+            records = sorted(self.path("out").rglob("*.adaptiso-bem.json"))
+            return [next((option["name"] for option in json.loads(each.read_text())["options"]
+                          if option["name"] == "--age"), None) for each in records]
+
+        self.assertEqual(ages(), ["--age", None])
+        self.assertEqual(ages("age=12"), ["--age", "--age"])
+        self.bids(CHECK_FAILED, "group", what=("--bem", "--bem-options", "vertices=162,age=12", "--no-pictures"))
+        self.assertIn("participants.tsv: lists participants without a folder: sub-77",
+                      self.path("out/summary.html").read_text())
+
     def test_wrong_usage(self):
         self.path("notes.txt").write_text("mine")
         for code, pattern, arguments in (

@@ -40,10 +40,14 @@ void tryText(std::uint8_t file, std::string_view text) {
         for (const std::string& id : adaptiso::bids::participantsIn(text)) {
             if (!id.starts_with("sub-")) std::abort();
         }
+        for (const auto& [id, years] : adaptiso::bids::agesIn(text, {})) {
+            if (!id.starts_with("sub-") || !(years >= 0 && years <= 120)) std::abort();
+        }
     } else if (file % 5 == 3) {
         tryIgnore(text);
     } else {
         (void)adaptiso::bids::missingKeyOf(text);
+        (void)adaptiso::bids::agesIn("participant_id\tage\n01\t9\n", text);
     }
 }
 

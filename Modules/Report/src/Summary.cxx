@@ -113,6 +113,7 @@ std::string summaryFacts(const Summary& summary) {
         how.emplace_back("Last run", dateText(date) + " UTC");
     }
     if (!summary.command.empty()) how.emplace_back("Made again by", summary.command);
+    for (const std::string& note : summary.notes) how.emplace_back("Warning", note);
     return factList("Runs by state", counts) + factList("How", how);
 }
 

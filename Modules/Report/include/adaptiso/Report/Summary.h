@@ -56,11 +56,12 @@ std::vector<SummaryReason> reasonsOf(const std::vector<SummaryRow>& rows);
 
 /// Many runs, for one page.
 struct Summary {
-    std::vector<SummaryRow> rows{};  ///< in the page's order
-    std::string title{};             ///< "Group of 12 participants"; empty: by the rows
-    std::string program{};           ///< that makes the page, with its version
-    std::string command{};           ///< that makes the page again; may be empty
-    OutlierRule outliers{};          ///< of the charts
+    std::vector<SummaryRow> rows{};    ///< in the page's order
+    std::string title{};               ///< "Group of 12 participants"; empty: by the rows
+    std::string program{};             ///< that makes the page, with its version
+    std::string command{};             ///< that makes the page again; may be empty
+    std::vector<std::string> notes{};  ///< warnings that are of no row
+    OutlierRule outliers{};            ///< of the charts
 };
 
 /// "2 of 12 failed, 1 missing or changed"; "All 12 done".
