@@ -1,16 +1,21 @@
 // libFuzzer target: bytes that claim to be a mesh file with the ending fuzz::ending().
-// Whatever they hold, they are refused with a FileError or give a sound mesh.
+// Whatever they hold, they are refused with a FileError or give a sound mesh; its solids are
+// checked.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "Ending.h"
 #include "OneLine.h"
 #include "Zip.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso {
 namespace {
@@ -39,14 +44,26 @@ void requireSound(const MeshFile& file) {
     }
 }
 
+/// As adaptiso-check looks at a file of several solids.
+void checkSolids(MeshFile&& file) {
+    constexpr std::int64_t kMostTriangles = 300;  // what crosses is found in more than linear time
+    if (file.solids.size() < 2 || std::ssize(file.mesh.triangles) > kMostTriangles) return;
+    const std::size_t before = file.mesh.triangles.size();
+    const std::vector<Solid> solids = separateSolids(file.mesh, file.solids);
+    const SurfaceFacts facts = measureSurface(file.mesh, sizeLimitsOf(Profile::Print), 10, solids);
+    const std::size_t count = std::max<std::size_t>(1, solids.size());
+    if (facts.solids != count || file.mesh.triangles.size() != before) std::abort();
+}
+
 /// \param isKnown  the format is; else content tells
 void decode(std::string_view bytes, const MeshReadOptions& options, bool isKnown = true) {
     static const MeshFormat format = findMeshFormat("fuzzed" + fuzz::ending());
     try {
-        const MeshFile file = isKnown ? decodeMesh(bytes, format, "fuzzed", options)
-                                      : decodeMesh(bytes, "fuzzed" + fuzz::ending(), options);
+        MeshFile file = isKnown ? decodeMesh(bytes, format, "fuzzed", options)
+                                : decodeMesh(bytes, "fuzzed" + fuzz::ending(), options);
         if (!options.keepsFaults) requireSound(file.mesh);
         requireSound(file);
+        checkSolids(std::move(file));
     } catch (const FileError& refusal) {
         fuzz::requireOneLine(refusal);
     }

@@ -5,8 +5,12 @@
 #include <vtkPolyDataWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include <array>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "InputFolder.h"
 #include "Seeds.h"
@@ -171,6 +175,23 @@ void addForeignTexts(Seeds& seeds) {
         "stl",
         "solid a\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1e0 0 0\n  vertex "
         "-0 +1 0\n endloop\nendfacet\nendsolid\n");
+    constexpr std::array<std::array<int, 3>, 4> kFaces{
+        {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+    std::string solids;  // two tetrahedra with a wall in common
+    for (const auto& [name, corner] : {std::pair{"a", "1 1 1"}, std::pair{"b", "-1 -1 -1"}}) {
+        const std::array<std::string, 4> corners{"0 0 0", "1 0 0", "0 1 0", corner};
+        const bool isTurned = name == std::string_view("b");
+        solids += std::string("solid ") + name + "\n";
+        for (const auto& [i, j, k] : kFaces) {
+            solids += "facet normal 0 0 0 outer loop";
+            for (const int c : {i, isTurned ? k : j, isTurned ? j : k}) {
+                solids += " vertex " + corners[c];
+            }
+            solids += " endloop endfacet\n";
+        }
+        solids += std::string("endsolid ") + name + "\n";
+    }
+    seeds.add("stl", solids);
     seeds.add("obj",
               "# CoordinateFrame: LPS mm\r\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\n"
               "usemtl x\ng y\nf -4/1 -3/1 -2/1\nf 1//1 2//1 4//1\nf 1/1/1 3/1/1 4/1/1\n");

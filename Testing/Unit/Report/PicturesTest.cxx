@@ -99,7 +99,9 @@ TEST(Pictures, MarksAreShownWithTheSurfaceBeforeThem) {
     EXPECT_TRUE(names.contains("surface-1.png"));
     EXPECT_FALSE(names.contains("surface-2.png"));
     for (const Picture& picture : pictures) {
-        if (picture.name == "alignment.png") EXPECT_NE(picture.png, plain);
+        if (picture.name == "alignment.png") {
+            EXPECT_NE(picture.png, plain);
+        }
     }
     EXPECT_EQ(drawViews(report, {.width = 40, .height = 30}).size(), 1U);
 }
