@@ -41,7 +41,7 @@ void declareBatchOptions(CLI::App& app, BatchOptions& options) {
                  "links to what they made (default with --output-dir: summary.html there)");
     running.text("--csv", "FILE", options.table,
                  "Write a table (CSV) of this batch: a line for each surface or region, with its "
-                 "figures");
+                 "figures. Of a batch --json has one JSON object a line, one for each run");
 }
 
 bool holdsName(const std::filesystem::path& output) {

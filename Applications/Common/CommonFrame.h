@@ -43,14 +43,12 @@ void checkInputCoordinates(const std::vector<CoordinateFrame>& stated, std::size
 std::optional<CoordinateFrame> statedFrame(const std::vector<CoordinateFrame>& stated,
                                            std::size_t n);
 
-/// The frame of a report page where no file says one.
-inline constexpr const char* kUnsaidFrame = "the file's own frame, which it does not say";
 inline constexpr const char* kStateIt =
     "; state it by --input-coordinates ras, lps, tkras or voxel";
 
 /// "RAS mm", "frame not said"
 std::string frameText(const std::optional<CoordinateFrame>& frame);
-/// "bone.stl (STL (binary), RAS mm)"
+/// "bone.stl (STL, RAS mm)"
 std::string fileText(const std::filesystem::path& file, const MeshFormat& format,
                      const std::optional<CoordinateFrame>& frame);
 

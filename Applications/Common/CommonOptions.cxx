@@ -39,7 +39,7 @@ void declareCommonOptions(CLI::App& app, CommonOptions& options, const std::stri
         ->needs(strict)
         ->join(',');
     running.text("--json", "FILE", options.json,
-                 "Write a report to FILE, or to stdout when FILE is -, in place of the text");
+                 "Write a report to FILE, or to stdout in place of the text when FILE is -");
     running.value(
         "--log", "FILE",
         [&app](const std::string& text) {

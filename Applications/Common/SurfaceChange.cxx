@@ -164,7 +164,7 @@ const Figures<SurfaceSummary>& summaryFigures() {
     static const Figures<SurfaceSummary> kRows{
         {"file", "name; empty: none is written", [](Of of) { return Json(baseName(of.file)); },
          "File", Shown::Plain},
-        {"format", "`\"PLY (binary)\"`, ...", [](Of of) { return Json(of.format->name); }},
+        {"format", "`\"PLY\"`, ...", [](Of of) { return Json(of.format->name); }},
         {"coordinates",
          "the file's frame: `\"ras\"`, `\"lps\"`, `\"tkras\"`, `\"voxel\"`; `null`: it does not "
          "say",

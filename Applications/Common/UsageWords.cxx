@@ -249,7 +249,9 @@ void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* arg
         if (!hasOwn && n + 1 == argc) refuse("its value is missing; give " + valueName(*option));
         const std::string_view value = hasOwn ? word.substr(name.size() + 1) : argv[++n];
         if (value.empty()) refuse("its value is empty; give " + valueName(*option));
-        if (value.starts_with("--") && optionNamed(app, beforeEquals(value)) != nullptr) {
+        const bool isShort = !hasOwn && value.size() == 2 && value[0] == '-';
+        if ((isShort || value.starts_with("--")) &&
+            optionNamed(app, beforeEquals(value)) != nullptr) {
             refuse("its value is missing; " + std::string(value) + " is an option");
         }
         if (!hasOwn && value.starts_with("--") && value != "--") {

@@ -206,8 +206,9 @@ void rememberReport(int argc, const char* const* argv) {
             if (!value.empty()) line.words.emplace_back(value);
         } else if (equals != std::string_view::npos) {
             line.json = value;
-        } else if (n + 1 < argc && !std::string_view(argv[n + 1]).starts_with("--")) {
-            line.json = argv[++n];
+        } else if (n + 1 < argc) {
+            const std::string_view next = argv[n + 1];
+            if (next == "-" || !next.starts_with("-")) line.json = argv[++n];
         }
     }
     std::erase_if(line.words, [](const std::string& word) {

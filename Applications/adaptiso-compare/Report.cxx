@@ -104,7 +104,7 @@ using Length = double DistanceStatistics::*;
 /// One row of the table: the same figure of every direction.
 void printRow(std::ostream& out, std::string_view name, Length length, double unit,
               const DistanceReport& distances) {
-    out << "  " << std::left << std::setw(22) << name << std::right;
+    out << "  " << std::left << std::setw(24) << name << std::right;
     for (const DistanceStatistics* direction :
          {&distances.aToB, &distances.bToA, &distances.combined}) {
         if (direction->samples == 0) continue;
@@ -117,7 +117,7 @@ void printRow(std::ostream& out, std::string_view name, Length length, double un
 /// The row of what no point exceeds.
 void printBound(std::ostream& out, std::string_view unitName, double unit,
                 const HausdorffReport& hausdorff) {
-    out << "  " << std::left << std::setw(22) << "proved at most, " + std::string(unitName)
+    out << "  " << std::left << std::setw(24) << "proved at most, " + std::string(unitName)
         << std::right << std::setw(12) << formatBound(hausdorff.aToB.upperMm / unit);
     if (hausdorff.bToA) {
         out << std::setw(12) << formatBound(hausdorff.bToA->upperMm / unit) << std::setw(12)
@@ -136,14 +136,14 @@ void printLengths(std::ostream& out, const std::string& unitName, double unit,
 
 void printDistances(std::ostream& out, const CompareRun& run) {
     const DistanceReport& distances = run.distances;
-    out << "  distance" << std::setw(26) << "A to B";
+    out << "  distance" << std::setw(28) << "A to B";
     if (run.options.isSymmetric) out << std::setw(12) << "B to A" << std::setw(12) << "both";
     out << '\n';
     printLengths(out, "mm", 1, run);
     if (run.voxelMm) printLengths(out, "voxels", *run.voxelMm, run);
     const double percentMm = run.b.diagonalMm / 100;
     printRow(out, "mean, % of diagonal", &DistanceStatistics::meanMm, percentMm, distances);
-    printRow(out, "maximum, % of diagonal", &DistanceStatistics::maxMm, percentMm, distances);
+    printRow(out, "largest, % of diagonal", &DistanceStatistics::maxMm, percentMm, distances);
     printRow(out, "normals, mean degrees", &DistanceStatistics::meanNormalDeviationDeg, 1,
              distances);
     printRow(out, "normals, 95 % within", &DistanceStatistics::p95NormalDeviationDeg, 1, distances);
@@ -152,8 +152,9 @@ void printDistances(std::ostream& out, const CompareRun& run) {
         return formatFixed(p.x, 2) + ", " + formatFixed(p.y, 2) + ", " + formatFixed(p.z, 2);
     };
     const HausdorffInterval& hausdorff = run.hausdorff.combined;
-    out << "  farthest at " << place(hausdorff.pointMm) << ", from " << place(hausdorff.nearestMm)
-        << " (" << frameText(run.frame) << ")\n";
+    out << "  farthest known, " << formatLength(hausdorff.lowerMm, 4) << " mm, at "
+        << place(hausdorff.pointMm) << ", from " << place(hausdorff.nearestMm) << " ("
+        << frameText(run.frame) << ")\n";
 }
 
 void printDifferences(std::ostream& out, const CompareRun& run) {

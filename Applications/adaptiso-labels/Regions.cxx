@@ -183,10 +183,16 @@ void resolveNames(LabelsOptions& options) {
     const LabelTable table = readNames(unnamed);
     const std::string source =
         unnamed.names.files.empty() ? baseName(options.input) : unnamed.names.files.front();
-    resolve("--labels", table, source, options.labels);
     for (LabelMerge& merge : options.merges) {
         resolve("--merge " + shown(merge.name), table, source, merge.labels);
     }
+    for (LabelRange& range : options.labels) {  // a new region by its name
+        const auto merge = std::ranges::find_if(options.merges, [&](const LabelMerge& each) {
+            return lowerCase(each.name) == lowerCase(range.name);
+        });
+        if (!range.name.empty() && merge != options.merges.end()) range = merge->labels.front();
+    }
+    resolve("--labels", table, source, options.labels);
     requireDisjoint(options.merges);
 }
 

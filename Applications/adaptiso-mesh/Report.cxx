@@ -61,7 +61,7 @@ std::string piecesText(const TopologyReport& topology) {
     return pieces + ", " + counted(cavities, "cavity", "cavities");
 }
 
-/// "STL (binary), RAS mm"
+/// "STL, RAS mm"
 std::string formatAndFrame(const SurfaceSummary& surface) {
     return std::string(surface.format->name) + ", " +
            (surface.scale == 1 ? std::string(toString(surface.frame))

@@ -33,7 +33,7 @@ class OutputTest(LabelsTest):
         # 1 km from the origin coordinates of single precision are 1/16 mm apart
         write_nifti(self.path("far.nii"),
                     three_boxes(spacing=(0.01, 0.01, 0.01), origin=(1e6, 0, 0)))
-        self.refused(BAD_INPUT, r"regions/\*\.stl: STL \(binary\) keeps 24 bits of a coordinate",
+        self.refused(BAD_INPUT, r"regions/\*\.stl: STL keeps 24 bits of a coordinate",
                      "far.nii", "-o", "out", "--format", "stl")
         done = self.labels("far.nii", "-o", "out")
         self.assertIn("all.surf.gii is left out", done.stderr)
@@ -430,6 +430,8 @@ class ChoiceTest(LabelsTest):
         # a label that is merged stands for its region
         self.labels("boxes.nii", "-o", "chosen", "-q", "--merge", "both=2,7", "--labels", "7")
         self.assertEqual(set(self.table("chosen")), {2})
+        self.labels("boxes.nii", "-o", "named", "-q", "--merge", "both=2,7", "--labels", "Both")
+        self.assertEqual(set(self.table("named")), {2})
 
     def test_refuses_choices_that_make_no_sense(self):
         for pattern, *arguments in (

@@ -278,7 +278,7 @@ class InTheFile(SimplifyTest):
 
     def test_a_format_without_values_is_a_warning(self):
         report = self.simplify("in.ply", "--max-error", "0.2", "-o", "out.stl")
-        self.assertEqual(lines(report["warnings"]), ["out.stl: STL (binary) holds no values at points; "
+        self.assertEqual(lines(report["warnings"]), ["out.stl: STL holds no values at points; "
                                               "left out: RGB, depth, part"])
         self.assertEqual(report["output"]["values"], [])
 

@@ -252,7 +252,7 @@ private:
                                format, count == 1 ? "" : "s"),
                    count == 1
                        ? "give the file"
-                       : "give one of them, or all for a batch: " +
+                       : "give one of them; a batch takes all: " +
                              (isBelow(first)
                                   ? fmt::format("--list takes what find {} -name '*{}' prints",
                                                 folder_.string(), ending(first))

@@ -53,8 +53,8 @@ constexpr MeshFormat kFormats[] = {
     // name              extensions   codec                   digits used in normals frame voxel geometry arrays colors cells vertices most
     {"VTK XML PolyData", kVtkXml,     &meshio::kVtkXmlCodec,     F64,  Ras,   yes,    yes,  yes,  no,      yes,    yes,   yes,  yes,      kInt64},
     {"VTK legacy",       kVtkLegacy,  &meshio::kVtkLegacyCodec,  F64,  Ras,   yes,    yes,  yes,  no,      yes,    yes,   no,   yes,      kInt64},
-    {"PLY (binary)",     kPly,        &meshio::kPlyCodec,        F64,  Ras,   yes,    yes,  yes,  no,      yes,    yes,   no,   yes,      kInt32},
-    {"STL (binary)",     kStl,        &meshio::kStlCodec,        F32,  Ras,   no,     yes,  yes,  no,      no,     no,    no,   no,       kInt32},
+    {"PLY",              kPly,        &meshio::kPlyCodec,        F64,  Ras,   yes,    yes,  yes,  no,      yes,    yes,   no,   yes,      kInt32},
+    {"STL",              kStl,        &meshio::kStlCodec,        F32,  Ras,   no,     yes,  yes,  no,      no,     no,    no,   no,       kInt32},
     {"Wavefront OBJ",    kObj,        &meshio::kObjCodec,        Text, Ras,   yes,    yes,  yes,  no,      no,     yes,   no,   yes,      kInt64},
     {"OFF",              kOff,        &meshio::kOffCodec,        Text, Ras,   no,     yes,  yes,  no,      no,     yes,   no,   yes,      kInt64},
     {"GIFTI",            kGifti,      &meshio::kGiftiCodec,      F32,  Ras,   no,     yes,  yes,  yes,     no,     no,    no,   yes,      kInt32},

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <map>
 
 #include "Bytes.h"
 #include "Codecs.h"
@@ -156,22 +156,27 @@ void scaleToUnitLength(std::vector<Normal>& normals) {
     }
 }
 
-/// ", meshes/*.stl" of a folder that holds such files; else empty.
+/// ", meshes/*.stl" of a folder that holds such files, by the extension of most of them.
 std::string filesToGive(const std::filesystem::path& folder) {
-    std::set<std::string> extensions;
+    std::map<std::string, int, std::less<>> extensions;
     std::error_code error;
     for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end;
          at.increment(error)) {
         std::error_code unknown;
-        if (at->is_regular_file(unknown)) extensions.insert(at->path().extension().string());
+        if (at->is_regular_file(unknown)) ++extensions[at->path().extension().string()];
     }
+    std::string_view most;
+    int files = 0;
     for (const MeshFormat& format : meshFormats()) {
         for (const std::string_view extension : format.extensions) {
-            if (!extensions.contains(std::string(extension))) continue;
-            return ", " + (folder / ("*" + std::string(extension))).string();
+            const auto found = extensions.find(extension);
+            if (found == extensions.end() || found->second <= files) continue;
+            files = found->second;
+            most = extension;
         }
     }
-    return {};
+    return files == 0 ? "; of images adaptiso-mesh makes surfaces"
+                      : ", " + (folder / ("*" + std::string(most))).string();
 }
 
 constexpr std::string_view kGzipMagic = "\x1F\x8B";
@@ -336,7 +341,7 @@ MeshFile readMesh(const std::filesystem::path& path, const MeshReadOptions& opti
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) {
         throw FileError(name + ": this is a folder, not a surface; give the files in it" +
-                        filesToGive(path) + " (of images adaptiso-mesh makes surfaces)");
+                        filesToGive(path));
     }
     // images may be large: the head is enough
     const std::filesystem::path file = meshio::fiffPart(path).first;

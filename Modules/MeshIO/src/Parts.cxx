@@ -97,7 +97,8 @@ void JoinedMeshes::moveTo(MeshFile& file, const MeshReadOptions& options) && {
     }
     if (solids_.size() < 2) return;
     file.warnings.push_back({"several-solids", "it holds " + std::to_string(solids_.size()) +
-                                                   " meshes, which were read as one surface"});
+                                                   " meshes, read as one surface; adaptiso-check "
+                                                   "looks at each by itself where all are closed"});
     file.solids = std::move(solids_);
 }
 

@@ -211,9 +211,10 @@ MeshFile decodeText(ByteSource source, FrameMarks marks) {
         file.solids.pop_back();  // without triangles
     }
     if (file.solids.size() > 1) {
-        file.warnings.push_back({"several-solids", "it holds " +
-                                                       std::to_string(file.solids.size()) +
-                                                       " solids, which were read as one surface"});
+        file.warnings.push_back(
+            {"several-solids", "it holds " + std::to_string(file.solids.size()) +
+                                   " solids, read as one surface; adaptiso-check looks at each by "
+                                   "itself where all are closed"});
     } else {
         file.solids.clear();
     }

@@ -165,6 +165,7 @@ std::string htmlPage(const Report& report, const std::vector<Picture>& pictures,
     frame.sources = "img-src data: blob:; script-src " + hashes +
                     "; connect-src data: blob:; worker-src blob:; font-src data:";
     frame.footnote = "Points are in " + report.frame +
+                     (scene.isFrameSaid ? "" : "; sides are named as if it were RAS") +
                      ". This page holds everything it needs, loads nothing and sends nothing.";
     if (showsViewer) {
         frame.end = "<details><summary>Licences of the viewer</summary><pre>" +

@@ -61,6 +61,7 @@ void leaveOutFace(const Report& report, Scene& scene) {
 
 Scene makeScene(const Report& report) {
     Scene scene;
+    scene.isFrameSaid = report.frame != kUnsaidFrame;
     double largest = 0;  // NaN never is
     for (const ReportSurface& given : report.surfaces) {
         SceneSurface surface;

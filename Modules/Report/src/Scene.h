@@ -151,6 +151,7 @@ struct Scene {
     std::vector<SceneSpot> spots;
     BoundingBox box;                        ///< of all surfaces; of the image when there is none
     std::shared_ptr<const FaceCut> face{};  ///< part left out; may be null
+    bool isFrameSaid = true;                ///< else sides are those of RAS, which it may not be
 
     bool isEmpty() const { return surfaces.empty(); }
     bool hasTriangles() const;

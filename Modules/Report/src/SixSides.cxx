@@ -66,7 +66,8 @@ void drawSixSides(Canvas& canvas, const Scene& scene, const RenderSide& renderSi
             canvas.ring({left + at.x, top + at.y}, 9, kAlarm, 2.5);
         }
         const double base = top + kViewSize + 16.0;
-        canvas.text({left + kViewSize / 2.0, base}, view.name, 14, kInk, Anchor::Middle);
+        const std::string name = std::string(view.name) + (scene.isFrameSaid ? "" : ", if RAS");
+        canvas.text({left + kViewSize / 2.0, base}, name, 14, kInk, Anchor::Middle);
         canvas.text({left + 30.0, base}, view.leftSide, 14, kFaint);
         canvas.text({left + kViewSize - 30.0, base}, view.rightSide, 14, kFaint, Anchor::Right);
     }

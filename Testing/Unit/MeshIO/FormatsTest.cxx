@@ -32,7 +32,7 @@ TEST(MeshFormats, ClassicFreeSurferNamesAreKnown) {
 }
 
 TEST(MeshFormats, ExtensionIsFoundWhateverItsCase) {
-    EXPECT_EQ(findMeshFormat("HEAD.STL").name, "STL (binary)");
+    EXPECT_EQ(findMeshFormat("HEAD.STL").name, "STL");
     EXPECT_EQ(findMeshFormat("lh.pial.surf.gii").name, "GIFTI");
 }
 

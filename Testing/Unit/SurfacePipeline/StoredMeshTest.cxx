@@ -116,8 +116,7 @@ TEST(SettleRounding, TellsWhatAFormatCannotHold) {
     const RoundingHarm harm = settleRounding(sphere, CoordinatePrecision::Float32, kRas);
     EXPECT_GT(harm.flatTriangles, 0);
     EXPECT_GT(harm.mergedPoints, 0);
-    EXPECT_NE(textOf(harm, findMeshFormat("a.stl")).find("STL (binary) keeps 24 bits"),
-              std::string::npos);
+    EXPECT_NE(textOf(harm, findMeshFormat("a.stl")).find("STL keeps 24 bits"), std::string::npos);
     EXPECT_FALSE(settleRounding(sphere, CoordinatePrecision::Float64, kRas));
 }
 
@@ -190,7 +189,7 @@ TEST(RoundingFault, RefusesRoundingBeyondTheBound) {
     const MeshFormat stl = findMeshFormat("a.stl");
     EXPECT_FALSE(roundingFault(0.01, 0.05, stl));
     EXPECT_EQ(roundingFault(0.226, 0.05, stl),
-              "STL (binary) keeps 24 bits of a coordinate: points would move by up to 0.226 mm, "
+              "STL keeps 24 bits of a coordinate: points would move by up to 0.226 mm, "
               "more than the bound of 0.05 mm; write a .vtp or .ply, or move the image nearer to "
               "the origin");
 }

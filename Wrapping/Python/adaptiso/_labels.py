@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import fnmatch
 import json
 from typing import (TYPE_CHECKING, Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple,
                     Union)
@@ -240,7 +241,8 @@ class _Names:
         """\\raises Error"""
         known = {label: entry[0] for label, entry in self.table.items() if label != 0}
         found = ([label for label, other in known.items() if other == name]
-                 or [label for label, other in known.items() if other.lower() == name.lower()])
+                 or [label for label, other in known.items() if other.lower() == name.lower()]
+                 or [label for label, other in known.items() if fnmatch.fnmatchcase(other.lower(), name.lower())])
         if found:
             return found
         near = [other for other in known.values() if name.lower() in other.lower()][:5]

@@ -180,7 +180,7 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         outside, and normals point outside.
 
         ``error_bound`` is of the surface moved alike. The mesh no longer knows its image, nor has it a
-        ``report``; ``frame`` stays.
+        ``report``; ``frame`` stays. By rounding, triangles that nearly touch may then cross: `check` finds them.
 
         Parameters
         ----------

@@ -122,7 +122,7 @@ def _advice(subject: str, typed: str, known: List[str]) -> str:
         return f"; did you mean {options[typed.replace('_', '-')]}=?"
     answer = _adaptiso.habit_answer(f"adaptiso-{program}", typed, list(options))
     if answer is None:
-        near = difflib.get_close_matches(typed, known, 1)
+        near = difflib.get_close_matches(typed, known, 1, 0.7)
         return f"; did you mean {near[0]}=?" if near else ""
     for option, name in options.items():
         answer = re.sub(rf"--{option}(?![a-z-])( (?=[A-Z0-9]))?", name + "=", answer)

@@ -23,7 +23,7 @@ enum class CoordinatePrecision {
 
 /// Capabilities of a file format.
 struct MeshFormat {
-    std::string_view name;                         ///< for people: "STL (binary)"
+    std::string_view name;                         ///< for people: "STL"
     std::span<const std::string_view> extensions;  ///< lower case, with the dot
     const meshio::Codec* codec;                    ///< recognises, reads and writes it
     CoordinatePrecision precision;

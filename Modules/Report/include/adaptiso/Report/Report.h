@@ -95,6 +95,9 @@ struct ReportHistogram {
     std::vector<double> marks;  ///< drawn in the colours of the surfaces of the same numbers
 };
 
+/// Report::frame of points whose file says none: sides are shown as in RAS, and said to be.
+inline constexpr const char* kUnsaidFrame = "the file's own frame, which it does not say";
+
 /// Content of a page. Texts are plain (they are escaped where needed) and hold
 /// neither folders nor anything that names a patient: that is for the caller to see to.
 struct Report {

@@ -44,7 +44,7 @@ RoundingHarm settleRounding(TriangleMesh& mesh, CoordinatePrecision precision,
 TriangleMesh asStored(const TriangleMesh& mesh, CoordinatePrecision precision,
                       const AffineTransform& toFrame);
 
-/// Why a file of this format would lie beyond a bound by its rounding alone: "STL (binary) keeps 24
+/// Why a file of this format would lie beyond a bound by its rounding alone: "STL keeps 24
 /// bits of a coordinate: points would move by up to 0.23 mm, more than the bound of 0.05 mm; ...".
 /// Empty where the rounding is less.
 /// \param boundMm  > 0
@@ -52,12 +52,12 @@ std::optional<std::string> roundingFault(double roundingMm, double boundMm,
                                          const MeshFormat& format);
 
 /// "bound-exceeded", where rounding takes a file beyond the bound that was asked for by more than a
-/// hundredth: "lies within 0.0569 mm, not 0.05 mm: STL (binary) keeps 24 bits ...". None elsewhere.
+/// hundredth: "lies within 0.0569 mm, not 0.05 mm: STL keeps 24 bits ...". None elsewhere.
 /// \param boundMm  that is proved, with the rounding \param requestedMm  > 0
 std::optional<Warning> roundingWarning(const std::string& file, double boundMm, double requestedMm,
                                        double roundingMm, const MeshFormat& format);
 
-/// "STL (binary) rounds coordinates to 24 bits, by which 2 pairs of triangles cross; ...".
+/// "STL rounds coordinates to 24 bits, by which 2 pairs of triangles cross; ...".
 std::string textOf(const RoundingHarm& harm, const MeshFormat& format);
 
 }  // namespace adaptiso
