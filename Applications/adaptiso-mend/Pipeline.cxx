@@ -52,7 +52,10 @@ void requireMendable(const MeshFile& input, const MendRun& run) {
 /// A message of mend() with the names of the command line's options, what was found and what helps.
 std::string inWordsOfOptions(std::string text, const std::string& found) {
     constexpr std::pair<std::string_view, std::string_view> kWords[] = {
-        {"mend: ", ""}, {"maxHoleMm", "--max-hole"}, {"maxErrorMm", "--max-error"}};
+        {"mend: ", ""},
+        {"maxHoleMm", "--max-hole"},
+        {"maxErrorMm", "--max-error"},
+        {"minVolumeMm3", "--min-volume"}};
     for (const auto& [ours, theirs] : kWords) {
         const std::size_t at = text.find(ours);
         if (at != std::string::npos) text.replace(at, ours.size(), theirs);

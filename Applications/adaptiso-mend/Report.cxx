@@ -27,6 +27,7 @@ Json foundJson(const MendRun& run) {
 Json optionsJson(const MendCommand& command) {
     Json json{{"inputCoordinates", inputCoordinatesJson(command.inputCoordinates)}};
     json.update(valuesJson(mendOptions(), command.aim));
+    json.update(valuesJson(pieceOptions(), command.aim.pieces));
     json["around"] = command.around.empty() ? Json() : Json(baseName(command.around));
     json["gapMm"] = orNull(command.gapMm);
     json.update(valuesJson(scaleOptions(), command.scale));
@@ -182,6 +183,7 @@ Report makeReport(const MendRun& run, const MeshFile& input, const TriangleMesh&
     report.inputs.push_back(
         {"Surface", fileText(run.input.file, *run.input.format, run.input.frame)});
     addOptions(mendOptions(), run.command.aim, report.options);
+    addOptions(pieceOptions(), run.command.aim.pieces, report.options);
     addChecks(run, report);
     report.notes = mendPlaceTexts(run.statistics);
     const ShownFrame frame = shownFrame(input);

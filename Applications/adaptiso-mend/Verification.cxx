@@ -83,8 +83,10 @@ Verification measure(const VerifiedSurface& verified, const MendStatistics& stat
                               {statistics.cutHandles, otherCapMm},
                               {statistics.filledHandles, otherCapMm}}),
           input, statistics.resultToInputMm, "the input");
-    check(apartFrom(input, {{statistics.inner, shiftMm}, {statistics.thin, shiftMm}}), surface,
-          statistics.inputToResultMm, "the result");
+    check(apartFrom(input, {{statistics.inner, shiftMm},
+                            {statistics.thin, shiftMm},
+                            {statistics.droppedPieces, otherCapMm}}),
+          surface, statistics.inputToResultMm, "the result");
     return measured;
 }
 

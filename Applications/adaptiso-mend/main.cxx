@@ -63,6 +63,7 @@ void declareMendOptions(CLI::App& app, MendCommand& command) {
                             "the mesh, given twice also of the surface of --around");
     const OptionGroup extent(app, "Extent");
     extent.rows(mendOptions(), command.aim);
+    extent.rows(pieceOptions(), command.aim.pieces);
     extent.text("--around", "FIXED", command.around,
                 "Move the result outward where it must, to lie around this surface. Each is in "
                 "one piece");

@@ -228,7 +228,7 @@ class Profiles(CheckTest):
         self.assertIn('data-spot="1">thinnest wall, 0.50 mm, in shell.off</button>', self.path("thick.html").read_text())
         text = self.run_check("shell.off", "--profile", "print").stdout
         self.assertIn("  to print: " + to_print, text)
-        self.assertIn("of a scan adaptiso-mesh --largest --fill-cavities makes one", text)
+        self.assertIn("adaptiso-mend --largest --fill-cavities leaves one", text)
         self.assertNotIn("angle", text.replace("triangle", ""))  # nor MNE's
         self.assertEqual(self.surface(shell, "--min-wall", 0.4, "--profile", "view")["failed"], [])
         self.assertEqual(self.surface(shell, "--min-wall", 0.6)["failed"], ["minWall"])

@@ -282,6 +282,18 @@ class Refusals(MendTest):
             self.mend(*command[0].split()[1:])
             self.assertTrue(self.check(f"mended-{name}")["passed"])
 
+    def test_crumbs_are_left_out_as_adaptiso_check_advises(self):
+        self.write("crumbs.off", together(BALL, shifted(icosphere(2), 60)))
+        done = subprocess.run([BIN / "adaptiso-check", "crumbs.off", "--profile", "print"], cwd=self.folder, text=True,
+                              capture_output=True)
+        self.assertIn("each is printed: adaptiso-mend --largest --fill-cavities leaves one", done.stdout)
+        report = self.mend("crumbs.off", "--largest", "--fill-cavities", "-o", "ball.off")
+        self.assertEqual((report["output"]["components"], report["output"]["triangles"]), (1, len(BALL[1])))
+        [piece] = report["output"]["droppedPieces"]
+        self.assertAlmostEqual(piece["middleMm"][0], 60 if report["input"]["coordinates"] == "ras" else -60, delta=0.1)
+        self.stays_out(CHECK_FAILED, "crumbs.off: can't be mended as asked: no piece has --min-volume of material",
+                       "crumbs.off", "--min-volume", 1e7, "-o", "none.off")
+
     def test_a_sheet_that_is_dropped_is_warned_of(self):
         square = [(50, 0, 0), (90, 0, 0), (90, 40, 0), (50, 40, 0)]
         sheet = square + square, [(0, 1, 2), (0, 2, 3), (6, 5, 4), (7, 6, 4)]  # both its sides

@@ -50,6 +50,9 @@ export interface MendRows {
   /** Refuse (exit code 1) holes wider than this (a number, 0 or more, in mm; default: 5 % of the diagonal). */ maxHoleMm?: number;
   /** Leave wider holes open instead. */ open?: boolean;
   /** Cut or fill every handle, by the smallest flat disc found, so that each piece is of genus 0. */ ball?: boolean;
+  /** Keep the piece with the most material only (of an open surface: the largest area). */ largest?: boolean;
+  /** Drop pieces with less material than this, and fill cavities with less (a number, 0 or more, in mm3). */ minVolumeMm3?: number;
+  /** Drop inner surfaces, and all that lies inside them. */ fillCavities?: boolean;
   /** Multiply the file's coordinates by this, about the origin: the file then names no frame of the scan. auto: as small as --fit needs, never larger. */ scale?: number | string;
   /** Refuse a surface that, as it lies, is larger than this printer's bed, in mm. */ fit?: number | string;
 }

@@ -195,25 +195,6 @@ std::vector<bool> selectLargestArea(const std::vector<Piece>& pieces) {
     return kept;
 }
 
-TriangleMesh keepComponents(const TriangleMesh& mesh, const ComponentLabels& labels,
-                            const std::vector<bool>& kept) {
-    TriangleMesh result;
-    std::vector<VertexId> used(mesh.points.size(), 0);
-    for (const Triangle& t : mesh.triangles) {
-        if (!kept[labels.ofVertex[t[0]]]) continue;
-        result.triangles.push_back(t);
-        for (const VertexId vertex : t) used[vertex] = 1;
-    }
-    for (VertexId vertex = 0; vertex < std::ssize(mesh.points); ++vertex) {
-        if (!used[vertex]) continue;
-        used[vertex] = std::ssize(result.points);
-        result.points.push_back(mesh.points[vertex]);
-        if (!mesh.normals.empty()) result.normals.push_back(mesh.normals[vertex]);
-    }
-    for (Triangle& t : result.triangles) t = {used[t[0]], used[t[1]], used[t[2]]};
-    return result;
-}
-
 }  // namespace
 
 ComponentLabels labelComponents(const TriangleMesh& mesh) {
@@ -248,12 +229,14 @@ const Options<ComponentSelection>& pieceOptions() {
     return kRows;
 }
 
-TriangleMesh selectComponents(const TriangleMesh& mesh, const ComponentSelection& selection) {
+std::vector<std::uint8_t> keptTriangles(const TriangleMesh& mesh,
+                                        const ComponentSelection& selection) {
     if (!(selection.minVolumeMm3 >= 0) || std::isinf(selection.minVolumeMm3)) {
         throw InvalidInput("selectComponents: minVolumeMm3 is " +
                            std::to_string(selection.minVolumeMm3) + ", must be finite and >= 0");
     }
-    if (selection.keepsAll() || mesh.triangles.empty()) return mesh;
+    std::vector<std::uint8_t> isKept(mesh.triangles.size(), 1);
+    if (selection.keepsAll() || mesh.triangles.empty()) return isKept;
     const bool isOpen = hasOpenEdge(mesh);
     if (isOpen && (selection.fillCavities || selection.minVolumeMm3 > 0)) {
         throw InvalidInput(
@@ -261,9 +244,32 @@ TriangleMesh selectComponents(const TriangleMesh& mesh, const ComponentSelection
     }
     const ComponentLabels labels = labelComponents(mesh);
     const std::vector<Piece> pieces = measurePieces(mesh, labels);
-    return keepComponents(
-        mesh, labels,
-        isOpen ? selectLargestArea(pieces) : selectClosed(mesh, pieces, labels, selection));
+    const std::vector<bool> kept =
+        isOpen ? selectLargestArea(pieces) : selectClosed(mesh, pieces, labels, selection);
+    for (std::size_t t = 0; t < isKept.size(); ++t) {
+        isKept[t] = kept[labels.ofVertex[mesh.triangles[t][0]]] ? 1 : 0;
+    }
+    return isKept;
+}
+
+TriangleMesh selectComponents(const TriangleMesh& mesh, const ComponentSelection& selection) {
+    const std::vector<std::uint8_t> isKept = keptTriangles(mesh, selection);
+    if (selection.keepsAll() || mesh.triangles.empty()) return mesh;
+    TriangleMesh result;
+    std::vector<VertexId> used(mesh.points.size(), 0);
+    for (std::size_t t = 0; t < isKept.size(); ++t) {
+        if (isKept[t] == 0) continue;
+        result.triangles.push_back(mesh.triangles[t]);
+        for (const VertexId vertex : mesh.triangles[t]) used[vertex] = 1;
+    }
+    for (VertexId vertex = 0; vertex < std::ssize(mesh.points); ++vertex) {
+        if (!used[vertex]) continue;
+        used[vertex] = std::ssize(result.points);
+        result.points.push_back(mesh.points[vertex]);
+        if (!mesh.normals.empty()) result.normals.push_back(mesh.normals[vertex]);
+    }
+    for (Triangle& t : result.triangles) t = {used[t[0]], used[t[1]], used[t[2]]};
+    return result;
 }
 
 }  // namespace adaptiso

@@ -133,7 +133,7 @@ bool turnTaken(const std::vector<Vec3>& points, const Vec3& normal, const EdgeSe
                     constexpr double kFlat = 1e-9;
                     const Corners corners{points[t[0]], points[t[1]], points[t[2]]};
                     return dot(normal, areaVector2(corners[0], corners[1], corners[2])) >
-                           kFlat * norm(boxOf(corners).size());
+                           kFlat * squaredNorm(boxOf(corners).size());
                 };
                 if (taken.contains(endsKey(c, d)) || !isUp(one) || !isUp(two)) continue;
                 triangles[n] = one;
@@ -244,18 +244,27 @@ std::vector<Triangle> flatCap(const TriangleMesh& mesh, const std::vector<Vertex
 /// Rings in one plane, the one round the others first: a cut through a solid with cavities.
 class RingGroups {
 public:
-    RingGroups(const std::vector<Vec3>& points, const std::vector<std::vector<VertexId>>& rings)
-        : points_(points), rings_(rings) {
-        for (const auto& ring : rings) planes_.emplace_back(points, ring);
+    RingGroups(const TriangleMesh& mesh, const std::vector<std::vector<VertexId>>& rings)
+        : mesh_(mesh), points_(mesh.points), rings_(rings) {
+        const std::vector<Vec3>& points = points_;
+        for (const auto& ring : rings) {
+            planes_.emplace_back(points, ring);
+            boxes_.push_back({points[ring[0]], points[ring[0]]});
+            for (const VertexId v : ring) boxes_.back().add(points[v]);
+        }
+        for (std::size_t n = 0; n < rings.size(); ++n) isFlat_.push_back(liesIn(n, n));
     }
 
     /// The groups of two rings or more, by their numbers. What lies in a cavity's ring is another
     /// solid, with a group of its own.
     std::vector<std::vector<std::size_t>> groups() const {
+        constexpr std::size_t kMostRings = 2000;  // all pairs are looked at
+        if (rings_.size() > kMostRings) return {};
         std::vector<std::optional<std::size_t>> parents(rings_.size());
         for (std::size_t inner = 0; inner < rings_.size(); ++inner) {
             std::optional<std::size_t>& least = parents[inner];
-            for (std::size_t outer = 0; outer < rings_.size(); ++outer) {
+            for (std::size_t outer = 0; isFlat_[inner] && outer < rings_.size(); ++outer) {
+                if (!isFlat_[outer]) continue;
                 if (least && planes_[outer].area2 >= planes_[*least].area2) continue;
                 if (isWithin(inner, outer)) least = outer;
             }
@@ -309,30 +318,33 @@ public:
         for (Triangle& t : triangles) {
             for (VertexId& v : t) v = numbers[static_cast<std::size_t>(v)];
         }
-        if (!turnTaken(points_, plane.normal, taken, triangles)) triangles.clear();
+        const bool isSound = turnTaken(points_, plane.normal, taken, triangles) &&
+                             std::ranges::none_of(triangles, [&](const Triangle& t) {
+                                 return isDegenerate(mesh_, t);
+                             });
+        if (!isSound) triangles.clear();
         return triangles;
     }
 
 private:
-    /// Their planes are the same, more or less, and the inner one begins in the outer one.
+    /// All its points lie in the plane of another ring, or of its own, but for rounding.
+    bool liesIn(std::size_t ring, std::size_t other) const {
+        constexpr double kRounding = 1e-5;  // of the other's width
+        const RingPlane& plane = planes_[other];
+        const double roundingMm = kRounding * std::sqrt(plane.area2);
+        return std::all_of(rings_[ring].begin(), rings_[ring].end(), [&](VertexId v) {
+            return std::abs(dot(plane.normal, points_[v] - plane.origin)) <= roundingMm;
+        });
+    }
+
+    /// The inner one lies in the plane of the outer one, and begins in it. \pre both are flat
     bool isWithin(std::size_t inner, std::size_t outer) const {
         constexpr double kParallel = 0.9;
         const RingPlane &own = planes_[inner], &plane = planes_[outer];
-        if (own.area2 >= plane.area2 || std::abs(dot(own.normal, plane.normal)) < kParallel)
+        if (own.area2 >= plane.area2 || std::abs(dot(own.normal, plane.normal)) < kParallel ||
+            !boxes_[outer].overlaps(boxes_[inner]) || !liesIn(inner, outer)) {
             return false;
-        const auto heights = [&](const std::vector<VertexId>& ring) {
-            double low = std::numeric_limits<double>::infinity(), high = -low;
-            for (const VertexId v : ring) {
-                const double height = dot(plane.normal, points_[v] - plane.origin);
-                low = std::min(low, height);
-                high = std::max(high, height);
-            }
-            return std::array{low, high};
-        };
-        constexpr double kRounding = 1e-5;  // of the ring's width
-        const double roundingMm = kRounding * std::sqrt(plane.area2);
-        const auto a = heights(rings_[inner]), b = heights(rings_[outer]);
-        if (a[0] > b[1] + roundingMm || b[0] > a[1] + roundingMm) return false;
+        }
         const Point2 at = plane(points_[rings_[inner][0]]);
         const std::vector<VertexId>& ring = rings_[outer];
         bool isIn = false;
@@ -349,9 +361,12 @@ private:
         return isIn;
     }
 
+    const TriangleMesh& mesh_;
     const std::vector<Vec3>& points_;
     const std::vector<std::vector<VertexId>>& rings_;
     std::vector<RingPlane> planes_;
+    std::vector<BoundingBox> boxes_;
+    std::vector<bool> isFlat_;
 };
 
 /// Which way a border goes on where it meets itself.
@@ -443,7 +458,8 @@ std::vector<std::vector<VertexId>> borderRings(const MendInput& input) {
     return rings;
 }
 
-bool addCaps(MendInput& input, bool isByArea) {
+bool addCaps(MendInput& input, CapKind kind) {
+    const bool isByArea = kind == CapKind::LeastArea;
     TriangleMesh& mesh = input.mesh;
     const auto rings = borderRings(input);
     if (rings.empty()) return false;
@@ -466,8 +482,8 @@ bool addCaps(MendInput& input, bool isByArea) {
         input.capOf.insert(input.capOf.end(), triangles.size(), caps++);
     };
     std::vector<std::uint8_t> isClosed(rings.size());
-    if (!isByArea) {
-        const RingGroups nested(mesh.points, rings);
+    if (kind == CapKind::Flat) {
+        const RingGroups nested(mesh, rings);
         for (const std::vector<std::size_t>& group : nested.groups()) {
             const std::vector<Triangle> triangles = nested.between(group, taken);
             if (triangles.empty()) continue;

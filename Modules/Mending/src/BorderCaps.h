@@ -9,12 +9,16 @@ namespace adaptiso::detail {
 /// \pre triangles that hang together face one way; edges are found
 std::vector<std::vector<VertexId>> borderRings(const MendInput& input);
 
+enum class CapKind : std::uint8_t {
+    Flat,       ///< in the plane that fits best, of up to 4096 edges; one for borders of one plane
+    FlatAlone,  ///< the same, one for each border
+    LeastArea   ///< of the least area that crosses nothing, of up to 256 edges
+};
+
 /// Closes holes by triangles between the corners of their borders: appends them to the mesh.
-/// \param isByArea  by those of the least area that cross nothing, borders of up to 256 edges; else
-///                  by those in the plane that fits best, borders of up to 4096 edges
 /// \pre triangles that hang together face one way; edges are found \post edges are not
 /// \return  whether there are any
-bool addCaps(MendInput& input, bool isByArea);
+bool addCaps(MendInput& input, CapKind kind);
 
 /// Takes away caps that cross anything, and all their crossings.
 /// \post edges are not found

@@ -476,7 +476,7 @@ private:
             open.mesh.triangles.push_back(result_.mesh.triangles[t]);
         }
         findEdges(open);
-        addCaps(open, false);
+        addCaps(open, CapKind::FlatAlone);
         std::vector<int> caps(2 * cuts_.size());
         const auto firstPoint = std::ssize(input_.mesh.points);
         for (std::int64_t t = open.firstCap(); t < std::ssize(open.mesh.triangles); ++t) {

@@ -62,6 +62,9 @@ double checkedBound(const MendOptions& options, double diagonal) {
     if (options.removesHandles && options.leavesHolesOpen) {
         throw InvalidInput("mend: removesHandles takes a closed surface: not with leavesHolesOpen");
     }
+    if (!options.pieces.keepsAll() && options.leavesHolesOpen) {
+        throw InvalidInput("mend: pieces are chosen of closed surfaces: not with leavesHolesOpen");
+    }
     return bound;
 }
 
@@ -424,6 +427,32 @@ std::vector<MendedPlace> bordersOfSheets(const TriangleMesh& mesh, const MendInp
     });
 }
 
+/// The triangles of pieces that are not wanted; empty where there are none.
+std::vector<std::uint8_t> unwanted(const TriangleMesh& mesh, const ComponentSelection& pieces) {
+    if (pieces.keepsAll()) return {};
+    std::vector<std::uint8_t> marks = keptTriangles(mesh, pieces);
+    for (std::uint8_t& mark : marks) mark = mark == 0 ? 1 : 0;
+    if (std::find(marks.begin(), marks.end(), 1) == marks.end()) marks.clear();
+    return marks;
+}
+
+/// Drops pieces that are not wanted, and counts again what is left.
+void dropPieces(const MendInput& input, const ComponentSelection& pieces, MendAssembly& assembly,
+                MendStatistics& statistics) {
+    const std::vector<std::uint8_t> isDropped = unwanted(assembly.mesh, pieces);
+    if (isDropped.empty()) return;
+    for (auto& piece : detail::connectedPlaces(assembly.mesh, isDropped)) {
+        statistics.droppedPieces.push_back(piece.first);
+    }
+    dropTriangles(assembly, isDropped);
+    if (assembly.mesh.triangles.empty()) {
+        throw InvalidInput("mend: no piece has minVolumeMm3 of material");
+    }
+    countOrigins(assembly, input, statistics);
+    statistics.filled.clear();
+    for (auto& hole : filledPlaces(assembly)) statistics.filled.push_back(hole.first);
+}
+
 /// mend() of a prepared input. `statistics` holds what was found.
 TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, const BoundingBox& box,
                           const MendOptions& options, MendStatistics& statistics) {
@@ -461,7 +490,8 @@ TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, cons
         }
         if (region.isEmpty() && assembly.mesh.triangles.size() == mesh.triangles.size() &&
             assembly.mesh.points.size() == mesh.points.size() &&
-            input.mesh.triangles == mesh.triangles && statistics.handles == 0) {
+            input.mesh.triangles == mesh.triangles && statistics.handles == 0 &&
+            unwanted(mesh, options.pieces).empty()) {
             statistics.wasSound = true;
             return mesh;
         }
@@ -480,6 +510,7 @@ TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, cons
             makeBalls(assembly, box, statistics);
             countOrigins(assembly, input, statistics);
         }
+        dropPieces(input, options.pieces, assembly, statistics);
         if (options.progress) options.progress("mend", 1);
         return std::move(assembly.mesh);
     }

@@ -449,10 +449,10 @@ MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {
     statistics.borderEdges = std::ssize(input.borders);
     Sheets sheets = makeSheetsFaceOneWay(input, trianglesAtEdges(input));
     std::vector<std::uint8_t> isTurned = sheets.isTurned;
-    for (const bool isByArea : {false, true}) {  // by area: borders that have no flat cap
-        if (addCaps(input, isByArea)) {
+    for (const CapKind kind : {CapKind::Flat, CapKind::LeastArea}) {
+        if (addCaps(input, kind)) {
             findEdges(input);
-        } else if (isByArea) {
+        } else if (kind == CapKind::LeastArea) {
             break;
         }
         sheets = makeSheetsFaceOneWay(input, trianglesAtEdges(input));

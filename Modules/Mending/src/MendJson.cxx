@@ -53,6 +53,7 @@ const PlacesRow kPlaces[] = {
      "parts inside the solid dropped"},
     {"thin", &MendStatistics::thin, "part too thin for the bound dropped",
      "parts too thin for the bound dropped"},
+    {"droppedPieces", &MendStatistics::droppedPieces, "piece left out", "pieces left out"},
     {"cutHandles", &MendStatistics::cutHandles, "handle cut", "handles cut"},
     {"filledHandles", &MendStatistics::filledHandles, "handle filled", "handles filled"},
 };
@@ -139,7 +140,8 @@ std::optional<Warning> mendWarning(const MendStatistics& statistics, double area
 
 std::string mendDistanceText(const MendStatistics& statistics, double roundingMm) {
     const bool hasDiscs = !statistics.cutHandles.empty() || !statistics.filledHandles.empty();
-    const bool hasDropped = !statistics.inner.empty() || !statistics.thin.empty();
+    const bool hasDropped =
+        !statistics.inner.empty() || !statistics.thin.empty() || !statistics.droppedPieces.empty();
     return "no point farther than " + formatBound(statistics.resultToInputMm + roundingMm) +
            " mm from the input" + (statistics.filled.empty() ? "" : ", but for the closed holes") +
            (hasDiscs ? ", but for the discs at handles" : "") +

@@ -318,8 +318,7 @@ private:
         std::string pieces = counted(components, "component") + largestComponents();
         if (rules_.profile == Profile::Print &&
             components > static_cast<std::int64_t>(facts_.solids)) {
-            pieces +=
-                "; each is printed; of a scan adaptiso-mesh --largest --fill-cavities makes one";
+            pieces += "; each is printed: adaptiso-mend --largest --fill-cavities leaves one";
         }
         addUnless(kOneComponent, components != 1, pieces);
 

@@ -133,6 +133,43 @@ TEST(Mend, ClosesACutThroughCavitiesByItsCorners) {
     EXPECT_EQ(mended.statistics.cells, 0);
     EXPECT_EQ(mended.statistics.filled.size(), 2u);
     EXPECT_NEAR(enclosedVolume(mended.mesh), 480 - 150 + 16 - 60, 1e-9);
+
+    TriangleMesh tilted = cut;  // rounded to the digits of a file of single precision
+    for (Vec3& p : tilted.points) {
+        const auto single = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+        p = {single(0.8 * p.x - 0.6 * p.z), single(p.y + 0.1), single(0.6 * p.x + 0.8 * p.z)};
+    }
+    const Mended again = mend(tilted, options);
+    expectMended(again);
+    EXPECT_EQ(again.mesh.triangles.size(), mended.mesh.triangles.size());
+    EXPECT_NEAR(enclosedVolume(again.mesh), 286, 1e-3);
+}
+
+/// A bowl with a wavy rim and a hole in its bottom, which has nothing of a cut by a plane: a wall
+/// between the two would make a ring of it.
+TEST(Mend, ClosesRimAndHoleOfABentSheetApart) {
+    constexpr int kRound = 64, kRings = 12;
+    TriangleMesh bowl;
+    for (int ring = 0; ring <= kRings; ++ring) {
+        for (int n = 0; n < kRound; ++n) {
+            const double angle = 2 * std::numbers::pi * n / kRound, radius = 4 + 3.0 * ring;
+            const double wave = 2 * std::sin(6 * angle) * ring / kRings;
+            bowl.points.push_back(
+                {radius * std::cos(angle), radius * std::sin(angle), radius * radius / 20 + wave});
+        }
+    }
+    for (int ring = 0; ring < kRings; ++ring) {
+        for (int n = 0; n < kRound; ++n) {
+            const VertexId a = ring * kRound + n, b = ring * kRound + (n + 1) % kRound;
+            bowl.triangles.push_back({a, a + kRound, b + kRound});
+            bowl.triangles.push_back({a, b + kRound, b});
+        }
+    }
+    MendOptions options = within(0.5);
+    options.maxHoleMm = 200;
+    const Mended mended = mend(bowl, options);
+    expectMended(mended);
+    EXPECT_EQ(checkTopology(mended.mesh).genus(), 0);
 }
 
 TEST(Mend, DropsTrianglesThatNameNoPoint) {
@@ -336,6 +373,48 @@ TEST(Mend, KeepsCavitiesAndDropsInnerShells) {
     expectMended(solid);
     EXPECT_EQ(nestingOf(solid.mesh), "()");
     EXPECT_NEAR(areaOf(solid.statistics.inner), surfaceArea(inner), 1e-9);
+}
+
+TEST(Mend, LeavesOutPiecesThatAreNotWanted) {
+    TriangleMesh cavity = bare(icosphere(2, {0, 0, 0}, 4));
+    for (Triangle& t : cavity.triangles) std::swap(t[1], t[2]);
+    const TriangleMesh ball = bare(icosphere(3, {0, 0, 0}, 10)),
+                       crumb = bare(icosphere(2, {20, 0, 0}, 2)),
+                       holed = withHole(bare(icosphere(3, {0, 30, 0}, 5)));
+    const TriangleMesh mesh = merged({ball, cavity, crumb, holed});
+    const auto mended = [&](const ComponentSelection& pieces) {
+        MendOptions options = within(0.2);
+        options.pieces = pieces;
+        Mended result = mend(mesh, options);
+        expectMended(result);
+        return result;
+    };
+    const std::size_t own = ball.triangles.size(), inner = cavity.triangles.size(),
+                      small = crumb.triangles.size(), other = holed.triangles.size() + 1;
+    const Mended all = mended({});
+    EXPECT_EQ(all.mesh.triangles.size(), own + inner + small + other);
+    EXPECT_EQ(all.statistics.filled.size(), 1U);
+    EXPECT_TRUE(all.statistics.droppedPieces.empty());
+
+    const Mended largest = mended({.largestOnly = true});
+    EXPECT_EQ(largest.mesh.triangles.size(), own + inner);
+    EXPECT_EQ(largest.statistics.keptTriangles, std::ssize(largest.mesh.triangles));
+    ASSERT_EQ(largest.statistics.droppedPieces.size(), 2U);
+    EXPECT_NEAR(largest.statistics.droppedPieces[1].middleMm.x, 20, 0.1);
+    EXPECT_TRUE(largest.statistics.filled.empty());  // it is of what was dropped
+    EXPECT_EQ(mended({.largestOnly = true, .fillCavities = true}).mesh.triangles.size(), own);
+    EXPECT_EQ(mended({.minVolumeMm3 = 100}).mesh.triangles.size(), own + inner + other);
+
+    MendOptions options;  // also of a sound mesh, which stays as it is otherwise
+    options.pieces.largestOnly = true;
+    const Mended sound = mend(merged({ball, crumb}), options);
+    EXPECT_FALSE(sound.statistics.wasSound);
+    EXPECT_EQ(sound.mesh.triangles.size(), own);
+    EXPECT_TRUE(mend(ball, options).statistics.wasSound);
+    options.pieces.minVolumeMm3 = 1e6;
+    EXPECT_THROW(mend(ball, options), MendRefusal);
+    options.leavesHolesOpen = true;
+    EXPECT_THROW(mend(ball, options), InvalidInput);
 }
 
 TEST(Mend, UnitesSolidsThatShareAWall) {

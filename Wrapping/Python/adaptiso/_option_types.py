@@ -46,6 +46,9 @@ class MendOptions(TypedDict, total=False):
     max_hole: Optional[float]
     open: Optional[bool]
     ball: Optional[bool]
+    largest: Optional[bool]
+    min_volume: Optional[float]
+    fill_cavities: Optional[bool]
 
 
 class LabelsOptions(TypedDict, total=False):

@@ -92,6 +92,7 @@ void declareMend(py::module_& module) {
            int threads, py::object progress) {
             MendOptions mended;
             take(mendOptions(), mended, options);
+            take(pieceOptions(), mended.pieces, options);
             return mendMesh(mesh, std::move(mended), {around, gap}, threads, std::move(progress));
         },
         py::arg("mesh"), py::arg("options"), py::arg("around"), py::arg("gap"), py::arg("threads"),

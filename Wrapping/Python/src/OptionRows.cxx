@@ -49,7 +49,7 @@ std::string optionRows() {
          {"check_nested", without({"profile", "max-off"}, rules)},
          {"simplify",
           joined({describe(aimOptions(AimedSurface::Mesh)), describe(simplifyOptions())})},
-         {"mend", describe(mendOptions())},
+         {"mend", joined({describe(mendOptions()), describe(pieceOptions())})},
          {"labels", describe(aimOptions(AimedSurface::Walls))},
          {"bem", joined({describe(boundaryOptions()), describe(sourceOptions()),
                          describe(elementOptions())})},

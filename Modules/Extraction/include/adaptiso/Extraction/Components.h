@@ -49,6 +49,10 @@ const Options<ComponentSelection>& pieceOptions();
 /// Cost: O(T log T + C t) for T triangles, C components, t of them above or below one point.
 TriangleMesh selectComponents(const TriangleMesh& mesh, const ComponentSelection& selection);
 
+/// Which triangles selectComponents() keeps: 1, else 0. \pre, \throws, cost: as it has them
+std::vector<std::uint8_t> keptTriangles(const TriangleMesh& mesh,
+                                        const ComponentSelection& selection);
+
 /// The component of every vertex, numbered 0, 1, ... by first vertex.
 struct ComponentLabels {
     std::vector<std::int64_t> ofVertex;

@@ -10,6 +10,7 @@
 #include "adaptiso/Core/Options.h"
 #include "adaptiso/Core/Progress.h"
 #include "adaptiso/Core/TriangleMesh.h"
+#include "adaptiso/Extraction/Components.h"
 
 namespace adaptiso {
 
@@ -25,13 +26,15 @@ struct MendOptions {
     bool leavesHolesOpen = false;  ///< wider holes stay open; otherwise they are refused
     /// Handles are cut or filled, until every piece is of genus 0. \pre not leavesHolesOpen
     bool removesHandles = false;
+    /// Pieces of the result that stay. \pre not leavesHolesOpen, unless all do
+    ComponentSelection pieces{};
     ProgressCallback progress;  ///< called as the work goes on; may be empty
 
     static constexpr double kPartOfDiagonal = 0.002, kHoleOfDiagonal = 0.05,
                             kLeastOfDiagonal = 1e-5;
 };
 
-/// A row for each.
+/// A row for each; those of `pieces` are pieceOptions().
 const Options<MendOptions>& mendOptions();
 
 /// A stretch of surface that the bound does not hold for.
@@ -67,6 +70,7 @@ struct MendStatistics {
     std::vector<MendedPlace> leftOpen;  ///< holes wider than maxHoleMm
     std::vector<MendedPlace> inner;     ///< of the input, within the solid: dropped, widest first
     std::vector<MendedPlace> thin;      ///< of the input, too thin to be kept: dropped
+    std::vector<MendedPlace> droppedPieces;  ///< that MendOptions::pieces leaves out, widest first
     /// Handles that were cut or filled, by the flat disc that does, the widest first.
     std::vector<MendedPlace> cutHandles, filledHandles;
 
@@ -76,8 +80,8 @@ struct MendStatistics {
     double maxErrorMm = 0;  ///< that was asked for
     /// No point of the result, `filled` and the discs at handles aside, is farther from the input.
     double resultToInputMm = 0;
-    /// No point of the input, `inner` and `thin` aside, is farther from the result. Triangles
-    /// without area are not asked.
+    /// No point of the input, `inner`, `thin` and `droppedPieces` aside, is farther from the
+    /// result. Triangles without area are not asked.
     double inputToResultMm = 0;
 };
 
