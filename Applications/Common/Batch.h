@@ -65,6 +65,10 @@ struct PlannedRun {
         extras{};  ///< "--report" and its file
 };
 
+/// "FOLDER/b.nii" of "a/b.nii", for commands on pages: a folder may name a patient. Parts from
+/// "{name}" on, and "/" at the end, stay.
+std::string withoutFolder(const std::string& path);
+
 /// The runs of `items`, with `batch.runOptions` applied to each.
 /// \param folder  that the batch writes to; may be empty
 /// \throws InvalidInput  two items have one name, or would write one surface

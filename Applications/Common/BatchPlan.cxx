@@ -116,8 +116,8 @@ void printReasons(std::span<const SummaryReason> reasons, const std::string& wor
     }
 }
 
-/// The command that makes the page again. Of folders, which may name a patient, it has none, or
-/// FOLDER in the place of them.
+/// The command that makes the page again. Folders, which may name a patient, are left out, those
+/// of options' values replaced by FOLDER.
 std::string commandOf(const BatchProgram& program, const BatchOptions& batch) {
     std::string words = program.name;
     const auto lastOf = [](const fs::path& path) {
@@ -131,7 +131,7 @@ std::string commandOf(const BatchProgram& program, const BatchOptions& batch) {
     for (const std::string& option : batch.runOptions) {
         const auto [name, value] = split(option);
         const bool isPath = value.find('/') != std::string::npos;
-        words += " " + shellQuoted(isPath ? name + "=FOLDER/" + lastOf(value) : option);
+        words += " " + shellQuoted(isPath ? name + "=" + withoutFolder(value) : option);
     }
     add("--output-dir", batch.outputFolder);
     add("--summary", batch.summary);
@@ -139,6 +139,12 @@ std::string commandOf(const BatchProgram& program, const BatchOptions& batch) {
 }
 
 }  // namespace
+
+std::string withoutFolder(const std::string& path) {
+    const std::size_t name = path.find("{name}"), last = path.find_last_not_of('/');
+    const std::size_t end = path.rfind('/', std::min(name, last));
+    return end == std::string::npos ? path : "FOLDER" + path.substr(end);
+}
 
 std::vector<BatchItem> findBatchItems(const BatchOptions& batch,
                                       const std::vector<fs::path>& inputs, const NameInput& nameOf,

@@ -490,7 +490,7 @@ EarlierRun findEarlierRun(const BatchProgram& program, const PlannedRun& run,
     } else if (earlier.fault == RecordFault::OfAnotherVersion) {
         earlier.why = "its record is of another version";
     } else if (!record.hasEnded) {
-        earlier.why = "its last run did not end";
+        earlier.why = "it was not run to its end";
     } else if (!record.isFinished()) {
         earlier.why = "its last run failed";
     } else if (record.version != version) {

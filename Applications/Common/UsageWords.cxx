@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <numeric>
 #include <span>
@@ -230,6 +231,11 @@ std::string alternatives(const std::vector<std::string>& words) {
     return text;
 }
 
+bool isLetterOption(std::string_view word) {
+    return word.size() == 2 && word[0] == '-' &&
+           std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+}
+
 void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* argv) {
     for (int n = 1; n < argc; ++n) {
         const std::string_view word = argv[n], name = beforeEquals(word);
@@ -249,12 +255,12 @@ void refuseMisplacedValues(const CLI::App& app, int argc, const char* const* arg
         if (!hasOwn && n + 1 == argc) refuse("its value is missing; give " + valueName(*option));
         const std::string_view value = hasOwn ? word.substr(name.size() + 1) : argv[++n];
         if (value.empty()) refuse("its value is empty; give " + valueName(*option));
-        const bool isShort = !hasOwn && value.size() == 2 && value[0] == '-';
+        const bool isShort = !hasOwn && isLetterOption(value);
         if ((isShort || value.starts_with("--")) &&
             optionNamed(app, beforeEquals(value)) != nullptr) {
             refuse("its value is missing; " + std::string(value) + " is an option");
         }
-        if (!hasOwn && value.starts_with("--") && value != "--") {
+        if (!hasOwn && (isShort || value.starts_with("--")) && value != "--") {
             refuse("its value is missing; one that begins with dashes is given as " +
                    nameOf(*option) + "=" + shellQuoted(std::string(value)));
         }

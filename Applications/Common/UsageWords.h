@@ -27,6 +27,9 @@ std::string suggestion(std::string_view typed, const std::vector<std::string>& w
 /// "adaptive, boxes or mc"
 std::string alternatives(const std::vector<std::string>& words);
 
+/// True for a dash and a letter: "-o".
+bool isLetterOption(std::string_view word);
+
 /// Refuses an option whose value is missing, empty or the name of another option, "--flag=value",
 /// and an empty argument. The parser would take the next word for the value. \throws UsageError
 /// \pre all options are declared

@@ -20,6 +20,7 @@
 
 #include "Common/Progress.h"
 #include "Common/RunApp.h"
+#include "Common/UsageWords.h"
 #include "Common/Warnings.h"
 #include "adaptiso/Core/Shortage.h"
 #include "adaptiso/Core/Text.h"
@@ -208,7 +209,7 @@ void rememberReport(int argc, const char* const* argv) {
             line.json = value;
         } else if (n + 1 < argc) {
             const std::string_view next = argv[n + 1];
-            if (next == "-" || !next.starts_with("-")) line.json = argv[++n];
+            if (!next.starts_with("--") && !isLetterOption(next)) line.json = argv[++n];
         }
     }
     std::erase_if(line.words, [](const std::string& word) {

@@ -181,6 +181,13 @@ void warnOfList(const BidsOptions& options, ChosenSubjects& chosen) {
         chosen.warnings.push_back({"participants-not-read", fault.what(), kList});
         return;
     }
+    constexpr const char* kAges = "participants.json";
+    try {
+        agesIn(text, textOf(options.dataset, kAges));
+    } catch (const FileError& fault) {
+        chosen.warnings.push_back(
+            {"participants-not-read", std::string(fault.what()) + "; no ages are taken", kAges});
+    }
     std::set<std::string> there;
     for (const fs::path& folder : chosen.folders) there.insert(folder.filename().string());
     const auto warn = [&](Warning warning, const std::set<std::string>& some,

@@ -377,7 +377,7 @@ std::string withoutFoldersInList(const std::string& list) {
         const std::size_t value = item.find('=') + 1;  // 0: a value alone
         const bool isPath = item.find('/', value) != std::string::npos;
         if (begin > 0) text += ",";
-        text += isPath ? item.substr(0, value) + "FOLDER/" + baseName(item.substr(value)) : item;
+        text += isPath ? item.substr(0, value) + withoutFolder(item.substr(value)) : item;
     }
     return text;
 }

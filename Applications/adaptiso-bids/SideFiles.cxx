@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 
+#include "Common/UsageWords.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/ParseJson.h"
 #include "adaptiso/Core/Text.h"
@@ -168,6 +169,17 @@ void forEachParticipant(
     }
 }
 
+/// \throws FileError  the unit is not known
+double yearsOf(const std::string& unit) {
+    constexpr double kDays = 365.25;
+    if (unit.starts_with("y") || unit == "a") return 1;
+    if (unit.starts_with("mo")) return 1.0 / 12;
+    if (unit.starts_with("w")) return 7 / kDays;
+    if (unit.starts_with("d")) return 1 / kDays;
+    throw FileError("the unit of 'age', " + shown(unit) +
+                    ", is none of years, months, weeks, days");
+}
+
 }  // namespace
 
 std::set<std::string> participantsIn(std::string_view text) {
@@ -183,12 +195,13 @@ std::map<std::string, double> agesIn(std::string_view text, std::string_view des
     const auto json = parseJson<Json>(description);
     const Json age = json.is_object() ? json.value("age", Json()) : Json();
     const Json unit = age.is_object() ? age.value("Units", Json()) : Json();
-    if (unit.is_string() && !lowerCase(unit.get<std::string>()).starts_with("year")) return ages;
+    const double unitYears = unit.is_string() ? yearsOf(lowerCase(unit.get<std::string>())) : 1;
     forEachParticipant(text, "age", [&](const std::string& id, const std::string& cell) {
         double years = -1;
         const char* const end = cell.data() + cell.size();
         const auto [last, error] = std::from_chars(cell.data(), end, years);
         const bool isNumber = error == std::errc() && last == end;
+        years *= unitYears;
         if (isNumber && years >= 0 && years <= kMostYears) ages[id] = years;
     });
     return ages;

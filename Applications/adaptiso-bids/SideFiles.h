@@ -38,7 +38,7 @@ std::set<std::string> participantsIn(std::string_view text);
 
 /// The column "age" of participants.tsv in years, by participant_id with "sub-"; those without a
 /// number are left out. \param description  the text of participants.json, which may name another
-/// unit: nothing is then known; may be empty. \throws FileError  as participantsIn()
+/// unit; may be empty. \throws FileError  as participantsIn(), and where the unit is not known
 std::map<std::string, double> agesIn(std::string_view text, std::string_view description);
 
 /// "Name" or "BIDSVersion" where the text of dataset_description.json lacks it; empty if it has

@@ -127,8 +127,8 @@ Examples:
 Exit codes: 0 all that is required holds, 1 something does not, or there is a
 warning with --strict, 2 wrong usage, 3 bad input (or no memory or disk left),
 4 internal error. A file that can't be read does not keep the others from being
-checked; the exit code is then 3, and 1 of a batch (--jobs, --output-dir, --csv
-or --list), as of any run that failed.)";
+checked; the exit code is then 3; in a batch (--jobs, --output-dir, --csv or
+--list) it is 1, as for any failed run.)";
 
 Program checkProgram() {
     return {kProgram, "Checks whether triangle surfaces are sound, and shows where they are not.",

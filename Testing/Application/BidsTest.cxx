@@ -10,6 +10,7 @@
 #include "adaptiso-bids/Jobs.h"
 #include "adaptiso-bids/QualityTable.h"
 #include "adaptiso-bids/SideFiles.h"
+#include "adaptiso/Core/Errors.h"
 
 namespace adaptiso::bids {
 namespace {
@@ -30,7 +31,10 @@ TEST(AgesIn, AreNumbersOfYears) {
     EXPECT_EQ(agesIn(table, ""), ages);
     EXPECT_EQ(agesIn(table, R"({"age": {"Units": "years"}})"), ages);
     EXPECT_EQ(agesIn(table, R"({"sex": {}})"), ages);
-    EXPECT_TRUE(agesIn(table, R"({"age": {"Units": "months"}})").empty());
+    EXPECT_EQ(agesIn(table, R"({"age": {"Units": "yr"}})"), ages);
+    EXPECT_DOUBLE_EQ(agesIn(table, R"({"age": {"Units": "Months"}})").at("sub-01"), 8.0 / 12);
+    EXPECT_DOUBLE_EQ(agesIn(table, R"({"age": {"Units": "weeks"}})").at("sub-02"), 3.5 / 365.25);
+    EXPECT_THROW(agesIn(table, R"({"age": {"Units": "parsec"}})"), FileError);
     EXPECT_TRUE(agesIn("participant_id\tsex\nsub-01\tF\n", "").empty());
 }
 

@@ -2,6 +2,7 @@
 
 import csv
 import gzip
+import hashlib
 import json
 import os
 import re
@@ -189,11 +190,20 @@ class Participants(BidsTest):
             what = ("--bem", "--bem-options", ",".join(("vertices=162", *options)), "--no-pictures")
             self.bids(CHECK_FAILED, "participant", "--participant-label", "01", "02", what=what)
             records = sorted(self.path("out").rglob("*.adaptiso-bem.json"))
-            return [next((option["name"] for option in json.loads(each.read_text())["options"]
+            return [next((option["sha256"] for option in json.loads(each.read_text())["options"]
                           if option["name"] == "--age"), None) for each in records]
 
-        self.assertEqual(ages(), ["--age", None])
-        self.assertEqual(ages("age=12"), ["--age", "--age"])
+        def digest(text):
+            return hashlib.sha256(text.encode()).hexdigest()
+
+        self.assertEqual(ages(), [digest("8.5"), None])
+        self.assertEqual(ages("age=12"), [digest("12")] * 2)
+        self.path("study/participants.json").write_text('{"age": {"Units": "months"}}')
+        self.assertEqual(ages(), [digest(repr(8.5 * (1 / 12))), digest("2.5")])
+        self.path("study/participants.json").write_text('{"age": {"Units": "parsec"}}')
+        done = self.bids(CHECK_FAILED, "participant", "--participant-label", "01", what=("--bem", "--no-pictures"))
+        self.assertRegex(done.stderr, "participants.json: the unit of 'age', parsec, is none of years.*no ages are taken")
+        self.path("study/participants.json").unlink()
         self.bids(CHECK_FAILED, "group", what=("--bem", "--bem-options", "vertices=162,age=12", "--no-pictures"))
         self.assertIn("participants.tsv: lists participants without a folder: sub-77",
                       self.path("out/summary.html").read_text())
@@ -384,7 +394,7 @@ class MadeAgain(BidsTest):
             self.assertEqual([name for name in self.tree() if name.startswith("sub-03")], [])
         write_nifti(long, ball(24, 8))
         self.assertEqual(self.told("--participant-label", "03", what=("--surfaces", "iso=128", "--no-pictures")),
-                         {"sub-03": "its last run did not end"})
+                         {"sub-03": "it was not run to its end"})
         self.assertEqual(len([name for name in self.tree() if name.startswith("sub-03")]), 2)
 
     def test_what_another_batch_has_made_meanwhile_is_not_made_again(self):

@@ -206,11 +206,11 @@ class DicomImages(ApplicationTest):
             (self.path("in") / name).write_bytes(gzip.compress(self.path("ball.nii").read_bytes()))
         self.path("in/notes.txt").write_text("x")
         self.path("in/a.json").write_text("{}")
-        self.assert_fails(BAD_INPUT, r"no DICOM file found in this folder: it holds 3 NIfTI files; give one of them, or "
-                                     r"all for a batch: in/\*\.nii\.gz", "in", "--iso", "50")
+        self.assert_fails(BAD_INPUT, r"no DICOM file found in this folder: it holds 3 NIfTI files; give one of them; "
+                                     r"a batch takes all: in/\*\.nii\.gz", "in", "--iso", "50")
         self.path("study").mkdir()
         self.path("in").rename(self.path("study/sub-1"))
-        self.assert_fails(BAD_INPUT, r"all for a batch: --list takes what find study -name '\*\.nii\.gz' prints",
+        self.assert_fails(BAD_INPUT, r"a batch takes all: --list takes what find study -name '\*\.nii\.gz' prints",
                           "study", "--iso", "50")
 
     def test_frames_left_out_of_a_segmentation_are_empty(self):

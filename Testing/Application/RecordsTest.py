@@ -84,7 +84,7 @@ class Skipping(RecordsTest):
                 (lambda: edit(keptOutputs=[], outputs=[]), "it lacks a surface"),
                 (lambda: edit(schema="adaptiso-record/9"), "its record is of another version"),
                 (lambda: edit(build="adaptiso-mesh 0.0.1"), "another version has made it"),
-                (lambda: edit(ended=False), "its last run did not end"),
+                (lambda: edit(ended=False), "it was not run to its end"),
                 (lambda: edit(exitCode=3), "its last run failed"),
                 (lambda: edit(options=[]), "other options were given")):
             with self.subTest(reason):

@@ -37,6 +37,8 @@ WRONG = [
      (*BALL, "-o", "--json", "r.json")),
     (USAGE, "--json: its value is missing; -o is an option", MESH,
      ("ball.nii", "--iso", "100", "--json", "-o", "x.stl")),
+    (USAGE, "--json: its value is missing; one that begins with dashes is given as --json=-o", CHECK,
+     ("a.off", "--json", "-o")),
     (USAGE, "--max-mean: its value is missing; --quiet is an option", COMPARE,
      ("a.off", "a.off", "--max-mean", "--quiet")),
     # too much
