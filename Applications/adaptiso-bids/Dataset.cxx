@@ -183,7 +183,7 @@ void warnOfList(const BidsOptions& options, ChosenSubjects& chosen) {
     }
     constexpr const char* kAges = "participants.json";
     try {
-        agesIn(text, textOf(options.dataset, kAges));
+        if (options.makes("bem")) agesIn(text, textOf(options.dataset, kAges));
     } catch (const FileError& fault) {
         chosen.warnings.push_back(
             {"participants-not-read", std::string(fault.what()) + "; no ages are taken", kAges});

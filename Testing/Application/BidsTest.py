@@ -203,6 +203,8 @@ class Participants(BidsTest):
         self.path("study/participants.json").write_text('{"age": {"Units": "parsec"}}')
         done = self.bids(CHECK_FAILED, "participant", "--participant-label", "01", what=("--bem", "--no-pictures"))
         self.assertRegex(done.stderr, "participants.json: the unit of 'age', parsec, is none of years.*no ages are taken")
+        done = self.bids(OK, "participant", "--participant-label", "01", what=("--surfaces", "iso=100", "--no-pictures"))
+        self.assertNotIn("participants.json", done.stderr)  # whose ages no surface asks for
         self.path("study/participants.json").unlink()
         self.bids(CHECK_FAILED, "group", what=("--bem", "--bem-options", "vertices=162,age=12", "--no-pictures"))
         self.assertIn("participants.tsv: lists participants without a folder: sub-77",

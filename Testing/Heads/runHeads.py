@@ -190,7 +190,7 @@ FIGURES = {"skullSeenShare": "rays that show the skull, part", "skullUnseenMm2":
 def limit_curves(runs, file):
     """A panel for each value that a limit judges: part of the models up to a value, right ones and wrong ones.
     `runs` are as limits.json has them; those of children, who have limits of their own, are left out."""
-    adults = 950  # least cm3
+    adults = max(each["least"] for run_ in runs for each in run_["limits"] if each["name"] == "innerSkullCm3")
     runs = [run_ for run_ in runs if any(each["name"] == "innerSkullCm3" and each["least"] == adults for each in run_["limits"])]
     import matplotlib
     matplotlib.use("Agg")
