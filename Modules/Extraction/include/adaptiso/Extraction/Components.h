@@ -49,7 +49,7 @@ const Options<ComponentSelection>& pieceOptions();
 /// Cost: O(T log T + C t) for T triangles, C components, t of them above or below one point.
 TriangleMesh selectComponents(const TriangleMesh& mesh, const ComponentSelection& selection);
 
-/// Which triangles selectComponents() keeps: 1, else 0. \pre, \throws, cost: as it has them
+/// Which triangles selectComponents() keeps: 1, else 0. Preconditions, errors and cost are its own.
 std::vector<std::uint8_t> keptTriangles(const TriangleMesh& mesh,
                                         const ComponentSelection& selection);
 
