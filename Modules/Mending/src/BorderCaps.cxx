@@ -93,6 +93,15 @@ struct RingPlane {
     }
 
     Point2 operator()(const Vec3& p) const { return {dot(u, p - origin), dot(v, p - origin)}; }
+
+    /// All points of a ring lie in it, but for rounding.
+    bool contains(const std::vector<Vec3>& points, const std::vector<VertexId>& ring) const {
+        constexpr double kRounding = 1e-5;  // of the own ring's width
+        const double roundingMm = kRounding * std::sqrt(area2);
+        return std::ranges::all_of(ring, [&](VertexId p) {
+            return std::abs(dot(normal, points[p] - origin)) <= roundingMm;
+        });
+    }
 };
 
 /// A ring seen along its mean normal, counter-clockwise. Empty where it has none.
@@ -252,7 +261,9 @@ public:
             boxes_.push_back({points[ring[0]], points[ring[0]]});
             for (const VertexId v : ring) boxes_.back().add(points[v]);
         }
-        for (std::size_t n = 0; n < rings.size(); ++n) isFlat_.push_back(liesIn(n, n));
+        for (std::size_t n = 0; n < rings.size(); ++n) {
+            isFlat_.push_back(planes_[n].contains(points, rings[n]));
+        }
     }
 
     /// The groups of two rings or more, by their numbers. What lies in a cavity's ring is another
@@ -297,12 +308,15 @@ public:
         const RingPlane& plane = planes_[group.front()];
         std::vector<Vec3> flat;  // as the first is seen
         std::vector<VertexId> numbers;
+        std::unordered_map<VertexId, VertexId> placeOf;  // rings may meet
         std::vector<std::vector<VertexId>> loops;
         for (const std::size_t n : group) {
             loops.emplace_back();
             for (const VertexId v : rings_[n]) {
+                const auto [place, isNew] = placeOf.try_emplace(v, std::ssize(flat));
+                loops.back().push_back(place->second);
+                if (!isNew) continue;
                 const Point2 seen = plane(points_[v]);
-                loops.back().push_back(std::ssize(flat));
                 flat.push_back({seen[0], seen[1], 0});
                 numbers.push_back(v);
             }
@@ -312,8 +326,7 @@ public:
         const Vec3 &low = box.minimum, &high = box.maximum;
         PlanarFiller filler;
         const auto filled = filler.fill(flat, {low, {high.x, low.y, 0}, {low.x, high.y, 0}}, loops);
-        const std::size_t due = flat.size() + 2 * group.size() - 4;
-        if (!filled || filled->size() != 1 || filled->front().triangles.size() != due) return {};
+        if (!filled || filled->size() != 1) return {};
         std::vector<Triangle> triangles = filled->front().triangles;
         for (Triangle& t : triangles) {
             for (VertexId& v : t) v = numbers[static_cast<std::size_t>(v)];
@@ -327,25 +340,16 @@ public:
     }
 
 private:
-    /// All its points lie in the plane of another ring, or of its own, but for rounding.
-    bool liesIn(std::size_t ring, std::size_t other) const {
-        constexpr double kRounding = 1e-5;  // of the other's width
-        const RingPlane& plane = planes_[other];
-        const double roundingMm = kRounding * std::sqrt(plane.area2);
-        return std::all_of(rings_[ring].begin(), rings_[ring].end(), [&](VertexId v) {
-            return std::abs(dot(plane.normal, points_[v] - plane.origin)) <= roundingMm;
-        });
-    }
-
     /// The inner one lies in the plane of the outer one, and begins in it. \pre both are flat
     bool isWithin(std::size_t inner, std::size_t outer) const {
         constexpr double kParallel = 0.9;
         const RingPlane &own = planes_[inner], &plane = planes_[outer];
         if (own.area2 >= plane.area2 || std::abs(dot(own.normal, plane.normal)) < kParallel ||
-            !boxes_[outer].overlaps(boxes_[inner]) || !liesIn(inner, outer)) {
+            !boxes_[outer].overlaps(boxes_[inner]) || !plane.contains(points_, rings_[inner])) {
             return false;
         }
-        const Point2 at = plane(points_[rings_[inner][0]]);
+        // of an edge: a corner may be the outer one's
+        const Point2 at = plane(0.5 * (points_[rings_[inner][0]] + points_[rings_[inner][1]]));
         const std::vector<VertexId>& ring = rings_[outer];
         bool isIn = false;
         Point2 before = plane(points_[ring.back()]);
@@ -406,6 +410,36 @@ private:
     const std::vector<Vec3>& points_;
     std::unordered_map<VertexId, Vec3> normals_;  ///< where a border meets itself
 };
+
+/// What goes beside cap triangles that cross something: those around them in a plane cap, the whole
+/// of any other, or where half of a plane cap would go.
+void widenWithinCaps(const MendInput& input, std::vector<std::uint8_t>& isDropped) {
+    constexpr int kRounds = 2;  // over edges
+    const std::int64_t first = input.firstCap();
+    for (int round = 0; round < kRounds; ++round) {
+        std::unordered_map<std::uint64_t, std::uint32_t> rims;  // edges, by their cap
+        const auto forEachEdge = [&](std::size_t n, const auto& see) {
+            const Triangle& t = input.mesh.triangles[first + static_cast<std::int64_t>(n)];
+            for (std::size_t i = 0; i < 3; ++i) see(endsKey(t[i], t[(i + 1) % 3]));
+        };
+        for (std::size_t n = 0; n < isDropped.size(); ++n) {
+            if (isDropped[n] == 0) continue;
+            forEachEdge(n, [&](std::uint64_t key) { rims.emplace(key, input.capOf[n]); });
+        }
+        for (std::size_t n = 0; n < isDropped.size(); ++n) {
+            forEachEdge(n, [&](std::uint64_t key) {
+                const auto rim = rims.find(key);
+                if (rim != rims.end() && rim->second == input.capOf[n]) isDropped[n] = 1;
+            });
+        }
+    }
+    std::vector<std::array<std::size_t, 2>> counts(input.capIsPlane.size());  // kept, dropped
+    for (std::size_t n = 0; n < isDropped.size(); ++n) ++counts[input.capOf[n]][isDropped[n]];
+    for (std::size_t n = 0; n < isDropped.size(); ++n) {
+        const auto& [kept, dropped] = counts[input.capOf[n]];
+        if (dropped > (input.capIsPlane[input.capOf[n]] != 0 ? kept : 0)) isDropped[n] = 1;
+    }
+}
 
 }  // namespace
 
@@ -472,14 +506,15 @@ bool addCaps(MendInput& input, CapKind kind) {
         if (isOnRing[edge.a] != 0 && isOnRing[edge.b] != 0) taken.insert(endsKey(edge.a, edge.b));
     }
     std::optional<ClearCaps> clear;
-    std::uint32_t caps = input.capOf.empty() ? 0 : input.capOf.back() + 1;
-    const std::uint32_t before = caps;
-    const auto add = [&](const std::vector<Triangle>& triangles) {
+    const std::size_t before = input.capIsPlane.size();
+    const auto add = [&](const std::vector<Triangle>& triangles, bool isPlane) {
         for (const auto& [a, b, c] : triangles) {
             taken.insert({endsKey(a, b), endsKey(b, c), endsKey(c, a)});
         }
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
-        input.capOf.insert(input.capOf.end(), triangles.size(), caps++);
+        input.capOf.insert(input.capOf.end(), triangles.size(),
+                           static_cast<std::uint32_t>(input.capIsPlane.size()));
+        input.capIsPlane.push_back(isPlane ? 1 : 0);
     };
     std::vector<std::uint8_t> isClosed(rings.size());
     if (kind == CapKind::Flat) {
@@ -488,7 +523,7 @@ bool addCaps(MendInput& input, CapKind kind) {
             const std::vector<Triangle> triangles = nested.between(group, taken);
             if (triangles.empty()) continue;
             for (const std::size_t n : group) isClosed[n] = 1;
-            add(triangles);
+            add(triangles, true);
         }
     }
     for (std::size_t n = 0; n < rings.size(); ++n) {
@@ -501,17 +536,18 @@ bool addCaps(MendInput& input, CapKind kind) {
             if (!clear) clear.emplace(mesh);
             triangles = clear->close(ring, taken);
         }
-        if (!triangles.empty()) add(triangles);
+        if (!triangles.empty())
+            add(triangles, !isByArea && RingPlane(mesh.points, ring).contains(mesh.points, ring));
     }
-    return caps != before;
+    return input.capIsPlane.size() != before;
 }
 
 bool dropCrossingCaps(MendInput& input) {
     const std::int64_t first = input.firstCap();
-    std::vector<std::uint8_t> isDropped(input.capOf.empty() ? 0 : input.capOf.back() + 1);
+    std::vector<std::uint8_t> isDropped(input.capOf.size());  // of triangles
     const auto isCap = [&](std::uint32_t t) { return t >= first; };
     const auto judge = [&](std::uint32_t t) {
-        if (isCap(t)) isDropped[input.capOf[t - first]] = 1;
+        if (isCap(t)) isDropped[t - first] = 1;
     };
     for (const auto& [a, b] : input.crossingPairs) {
         judge(a);
@@ -519,13 +555,14 @@ bool dropCrossingCaps(MendInput& input) {
     }
     for (const std::uint32_t t : input.undecided) judge(t);
     if (std::find(isDropped.begin(), isDropped.end(), 1) == isDropped.end()) return false;
+    widenWithinCaps(input, isDropped);
     // caps come last, so that no other triangle gets another number; none that crosses stays
     std::erase_if(input.crossingPairs,
                   [&](const auto& pair) { return isCap(pair[0]) || isCap(pair[1]); });
     std::erase_if(input.undecided, isCap);
     std::size_t next = 0;
     for (std::size_t n = 0; n < input.capOf.size(); ++n) {
-        if (isDropped[input.capOf[n]] != 0) continue;
+        if (isDropped[n] != 0) continue;
         input.mesh.triangles[first + next] = input.mesh.triangles[first + n];
         input.capOf[next++] = input.capOf[n];
     }

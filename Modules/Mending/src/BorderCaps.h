@@ -20,7 +20,8 @@ enum class CapKind : std::uint8_t {
 /// \return  whether there are any
 bool addCaps(MendInput& input, CapKind kind);
 
-/// Takes away caps that cross anything, and all their crossings.
+/// Takes away caps that cross anything, and all their crossings. A plane cap crosses by rounding:
+/// it goes around these places alone, where that is less than half of it.
 /// \post edges are not found
 /// \return  whether there were any
 bool dropCrossingCaps(MendInput& input);

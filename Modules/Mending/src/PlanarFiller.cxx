@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "adaptiso/Core/Buckets.h"
@@ -25,6 +27,72 @@ double worseShape(const std::vector<Vec3>& points, const Vec3& normal, const Tri
         worst = std::min(worst, dot(normal, areaVector2(a, b, c)) / longest);
     }
     return worst;
+}
+
+/// A half-line from a corner, towards one beside it.
+struct Ray {
+    std::int64_t u, v;
+    std::uint32_t corner;
+    bool isOut;  ///< towards the next corner
+
+    bool isUpper() const { return v > 0 || (v == 0 && u > 0); }
+    bool operator<(const Ray& other) const {
+        if (isUpper() != other.isUpper()) return isUpper();
+        return u * other.v - v * other.u > 0;
+    }
+};
+
+/// Where loops meet at a point, joins their edges so that each corner has one sector of the inside,
+/// as PlanarTriangulator asks. Corners whose edges overlap are left as they are.
+void joinSectors(std::vector<PlanarCorner>& corners, const std::vector<VertexId>& nodes) {
+    std::vector<std::uint32_t> order(corners.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t c) { return nodes[c]; });
+    for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+        for (last = first; last < order.size() && nodes[order[last]] == nodes[order[first]];)
+            ++last;
+        if (last - first < 2) continue;
+        std::vector<Ray> rays;
+        for (std::size_t n = first; n < last; ++n) {
+            const PlanarCorner& at = corners[order[n]];
+            const PlanarCorner &next = corners[at.next], &previous = corners[at.previous];
+            rays.push_back({next.u - at.u, next.v - at.v, at.next, true});
+            rays.push_back({previous.u - at.u, previous.v - at.v, at.previous, false});
+        }
+        std::ranges::sort(rays, std::less<>());
+        const bool isClear = std::ranges::adjacent_find(rays, [](const Ray& a, const Ray& b) {
+                                 return !(a < b) || a.isOut == b.isOut;
+                             }) == rays.end();
+        if (!isClear) continue;
+        if (!rays.front().isOut) std::ranges::rotate(rays, rays.begin() + 1);
+        for (std::size_t n = 0; n < rays.size(); n += 2) {
+            const std::uint32_t own = order[first + n / 2];
+            corners[own].next = rays[n].corner;
+            corners[own].previous = rays[n + 1].corner;
+            corners[rays[n].corner].previous = corners[rays[n + 1].corner].next = own;
+        }
+    }
+}
+
+/// Of a plane region's corners, loops and parts that hang together by edges, by Euler's formula.
+std::int64_t trianglesDue(const std::vector<PlanarCorner>& corners,
+                          const std::vector<LocalTriangle>& triangles) {
+    const auto count = std::ssize(corners);
+    DisjointSets loops(count), parts(count);
+    for (std::int64_t c = 0; c < count; ++c) {
+        loops.join(c, corners[c].next);
+        parts.join(c, corners[c].next);
+    }
+    for (const LocalTriangle& t : triangles) {
+        parts.join(t[0], t[1]);
+        parts.join(t[0], t[2]);
+    }
+    std::int64_t due = count;
+    for (std::int64_t c = 0; c < count; ++c) {
+        if (loops.find(c) == c) due += 2;
+        if (parts.find(c) == c) due -= 4;
+    }
+    return due;
 }
 
 }  // namespace
@@ -94,12 +162,14 @@ std::optional<std::vector<PlanarGroup>> PlanarFiller::fill(
             loopOf.push_back(static_cast<std::int64_t>(l));
         }
     }
+    joinSectors(corners, nodes);
     std::vector<LocalTriangle> triangles;
     try {
         triangulator_.triangulate(corners, triangles);
     } catch (const InternalError&) {
         return std::nullopt;
     }
+    if (std::ssize(triangles) != trianglesDue(corners, triangles)) return std::nullopt;
     for (const LocalTriangle& local : triangles) {
         sets.join(loopOf[local[0]], loopOf[local[1]]);
         sets.join(loopOf[local[0]], loopOf[local[2]]);

@@ -145,6 +145,70 @@ TEST(Mend, ClosesACutThroughCavitiesByItsCorners) {
     EXPECT_NEAR(enclosedVolume(again.mesh), 286, 1e-3);
 }
 
+/// A box with three cavities that end in a tip: the mouths of two meet at a corner, the third's has
+/// the box's corner.
+TEST(Mend, ClosesACutWhereItsRingsMeetAtACorner) {
+    const auto cavity = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+        const Vec3 tip = (1.0 / 3) * (a + b + c) - Vec3{0, 0, 3};
+        TriangleMesh mesh;
+        mesh.points = {a, b, c, tip};
+        mesh.triangles = {Triangle{0, 1, 3}, Triangle{1, 2, 3}, Triangle{2, 0, 3}};
+        return mesh;
+    };
+    TriangleMesh box = cubeMesh({0, 0, 0}, {10, 10, 6});
+    std::erase_if(box.triangles, [&](const Triangle& t) {
+        return std::ranges::all_of(t, [&](VertexId v) { return box.points[v].z == 6; });
+    });
+    const TriangleMesh cut = merged({box, cavity({5, 5, 6}, {6, 8, 6}, {4, 8, 6}),
+                                     cavity({5, 5, 6}, {3, 2, 6}, {7, 2, 6}),
+                                     cavity({10, 10, 6}, {8, 9, 6}, {9, 8, 6})});
+    MendOptions options;
+    options.maxHoleMm = 20;
+    const Mended mended = mend(cut, options);
+    expectMended(mended);
+    EXPECT_EQ(mended.statistics.cells, 0);
+    // 13 corners of a plane with one hole: the mouths that meet; the third is part of the rim
+    EXPECT_EQ(mended.mesh.triangles.size(), cut.triangles.size() + 13);
+    EXPECT_NEAR(enclosedVolume(mended.mesh), 600 - (3 + 6 + 1.5), 1e-9);
+}
+
+/// A drum without its upper lid, a corner of whose wall reaches over the rim's plane by a hair: the
+/// lid crosses the wall there, and is made anew around that place alone.
+TEST(Mend, KeepsMostOfALidThatCrossesTheWallByAHair) {
+    constexpr VertexId kRound = 400;
+    TriangleMesh drum;
+    const auto addPoint = [&](double number, double radius, double z) {
+        const double angle = 2 * std::numbers::pi * number / kRound;
+        drum.points.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+    };
+    for (const double z : {0.0, -3.0}) {
+        for (VertexId n = 0; n < kRound; ++n) addPoint(static_cast<double>(n), 10, z);
+    }
+    addPoint(0, 0, -3);
+    const VertexId bottom = 2 * kRound, over = bottom + 1;
+    addPoint(0.5, 9.99, 1e-7);
+    for (VertexId n = 0; n < kRound; ++n) {
+        const VertexId a = n, b = (n + 1) % kRound, c = a + kRound, d = b + kRound;
+        drum.triangles.push_back({bottom, d, c});
+        if (n > 0) {
+            drum.triangles.push_back({a, c, d});
+            drum.triangles.push_back({a, d, b});
+            continue;
+        }
+        const std::array<VertexId, 5> round{a, c, d, b, a};
+        for (std::size_t i = 0; i < 4; ++i) {
+            drum.triangles.push_back({round[i], round[i + 1], over});
+        }
+    }
+    MendOptions options = within(0.05);
+    options.maxHoleMm = 30;
+    const Mended mended = mend(drum, options);
+    expectMended(mended);
+    EXPECT_LT(mended.statistics.cells, 2000);  // the lid alone has 300,000
+    EXPECT_GT(mended.statistics.cells, 0);
+    EXPECT_NEAR(enclosedVolume(mended.mesh), 3 * std::numbers::pi * 100, 0.2);
+}
+
 /// A bowl with a wavy rim and a hole in its bottom, which has nothing of a cut by a plane: a wall
 /// between the two would make a ring of it.
 TEST(Mend, ClosesRimAndHoleOfABentSheetApart) {
