@@ -404,12 +404,11 @@ bool isForMending(const SurfaceRun& surface) {
            });
 }
 
-/// --max-hole for a border that may be wider than what adaptiso-mend closes by itself: half its
-/// length is the most that it can span.
+/// --max-hole for a border that may be wider than what adaptiso-mend closes by itself.
 std::string holeOption(const SurfaceFacts& facts) {
     constexpr double kLeft = 0.99;  // new surface reaches beyond the border a little
     if (facts.holes.empty()) return {};
-    const double spanMm = facts.holes.front().lengthMm / 2;
+    const double spanMm = std::ranges::max(facts.holes, {}, &Hole::spanMm).spanMm;
     const double diagonalMm = norm(facts.size.extentMm);
     if (spanMm < kLeft * MendOptions::kHoleOfDiagonal * diagonalMm) return {};
     const double enoughMm = spanMm / kLeft;

@@ -145,11 +145,9 @@ void printFacts(std::ostream& out, const SurfaceFacts& facts, bool isForPrinter)
     printSpread(out, "edge, mm", facts.shape.edgeMm, 3);
 }
 
-/// "144.0 x 180.2 x 152.1 mm, 1 shell, 2 handles, thinnest wall 0.42 mm"
+/// "144 x 180.2 x 152.1 mm, 1 shell, 2 handles, thinnest wall 0.42 mm"
 std::string printText(const SurfaceFacts& facts) {
-    const Vec3& size = facts.size.extentMm;
-    std::string text = formatFixed(size.x, 1) + " x " + formatFixed(size.y, 1) + " x " +
-                       formatFixed(size.z, 1) + " mm, " +
+    std::string text = formatSizeMm(facts.size.extentMm) + ", " +
                        counted(std::ssize(facts.topology.components), "shell");
     if (const auto genus = facts.topology.genus()) text += ", " + counted(*genus, "handle");
     if (!facts.walls || !facts.walls->hasWall()) return text;

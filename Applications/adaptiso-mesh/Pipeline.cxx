@@ -219,6 +219,7 @@ double chooseScale(const TriangleMesh& mesh, const AffineTransform& toFile,
 /// Brings the figures of a surface in the scan to those of its file.
 void scaleFigures(SurfaceSummary& surface) {
     const double factor = surface.scale, square = factor * factor, cube = square * factor;
+    surface.sizeMm = factor * surface.sizeMm;
     surface.areaMm2 *= square;
     if (surface.volumeMm3) *surface.volumeMm3 *= cube;
     if (surface.roundingMm) *surface.roundingMm *= factor;

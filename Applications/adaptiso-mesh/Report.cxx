@@ -79,12 +79,14 @@ void printSurface(std::ostream& out, const MeshRun& run, const SurfaceSummary& s
         << " vertices, " << piecesText(topology) << "; marching cubes makes "
         << formatCount(surface.statistics.marchingCubesTriangles) << '\n';
     if (surface.volumeMm3) {
-        out << "  closed, area " << formatMeasure(surface.areaMm2) << " mm2, volume "
+        out << "  closed, " << formatSizeMm(surface.sizeMm) << ", area "
+            << formatMeasure(surface.areaMm2) << " mm2, volume "
             << formatMeasure(*surface.volumeMm3) << " mm3\n";
     } else {
         out << "  open at the border of the image ("
-            << counted(topology.count(TopologyDefect::BoundaryEdge), "edge") << "), area "
-            << formatMeasure(surface.areaMm2) << " mm2\n";
+            << counted(topology.count(TopologyDefect::BoundaryEdge), "edge") << "), "
+            << formatSizeMm(surface.sizeMm) << ", area " << formatMeasure(surface.areaMm2)
+            << " mm2\n";
     }
     if (const auto boundMm = surface.errorBoundMm()) {
         out << "  no point farther than " << formatBound(*boundMm)

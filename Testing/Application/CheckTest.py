@@ -221,7 +221,7 @@ class Profiles(CheckTest):
         self.assertGreaterEqual(walls["thinAreaMm2"], 26 * 16)
         self.assertEqual((thin["passed"], thin["options"]["minWallMm"], outcome(thin["surfaces"][0], "minWall"),
                           [warning["code"] for warning in thin["warnings"]]), (True, 0.8, "failed", ["thin-walls"]))
-        to_print = "30.0 x 20.0 x 10.0 mm, 2 shells, 0 handles, thinnest wall 0.50 mm"
+        to_print = "30 x 20 x 10 mm, 2 shells, 0 handles, thinnest wall 0.50 mm"
         self.assertIn(to_print, self.path("page.html").read_text())
         # a wall that is thick enough has its place too
         self.check("shell.off", "--profile", "print", "--min-wall", 0.4, "--report", "thick.html")

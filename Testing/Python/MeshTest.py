@@ -173,6 +173,25 @@ class Values(unittest.TestCase):
                 mesh.transform(bad)
 
 
+class TransformedFiles(InFolder):
+    def test_are_sound_or_refused(self):
+        """20 km off, single precision has steps of 2 mm."""
+        mesh = sphere(affine=LIA, max_error=0.1)
+        for offset, is_sound in ((7e4, True), (2e7, False)):
+            matrix = np.eye(4)
+            matrix[:3, 3] = offset
+            moved = mesh.transform(matrix)
+            moved.save(self.folder / "moved.vtp")
+            file = self.folder / f"{offset}.stl"
+            if is_sound:
+                moved.save(file)
+                self.assertTrue(adaptiso.check(file).passed)
+                continue
+            with self.assertRaisesRegex(adaptiso.Error, "STL"):
+                moved.save(file)
+            self.assertFalse(file.exists())
+
+
 class Plots(InFolder):
     def test_draws_without_a_display(self):
         file = self.folder / "a.png"

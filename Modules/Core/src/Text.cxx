@@ -258,6 +258,14 @@ std::string formatBound(double value, int digits) {
     return formatLength(value + 0.6 * last, digits);
 }
 
+std::string formatSizeMm(const Vec3& mm) {
+    const auto text = [](double value) {
+        return value < 0.1 ? formatLength(value, 4)
+                           : formatNumber(std::stod(formatFixed(value, value < 1 ? 4 : 1)));
+    };
+    return text(mm.x) + " x " + text(mm.y) + " x " + text(mm.z) + " mm";
+}
+
 std::string formatMeasure(double value) {
     return isLargeFor(0, value) ? formatRounded(value) : formatGeneral(value, kLeastDigits);
 }

@@ -24,6 +24,8 @@ std::string figureText(const Json& value, Shown shown) {
             return formatCount(value.get<std::int64_t>());
         case Shown::Bound:
             return formatBound(value.get<double>());
+        case Shown::Size:
+            return formatSizeMm({value.at(0), value.at(1), value.at(2)});
         case Shown::Measure:
             return formatMeasure(value.get<double>());
     }

@@ -195,10 +195,29 @@ void splitFans(TriangleMesh& mesh) {
     }
 }
 
-[[noreturn]] void refuseHole(const MendedPlace& place, double maxHoleMm) {
-    throw InvalidInput("mend: a hole near " + textOf(place.middleMm) + " is " +
+/// The parts of borders that hang together, the widest first.
+/// \param give  calls its argument with the two points of each border edge
+template <class Give>
+std::vector<MendedPlace> borderPlaces(const std::vector<Vec3>& points, const Give& give) {
+    TriangleMesh borders{points, {}, {}};  // an edge as a triangle without area
+    give([&](VertexId a, VertexId b) { borders.triangles.push_back({a, b, b}); });
+    const std::vector<std::uint8_t> all(borders.triangles.size(), 1);
+    std::vector<MendedPlace> places;
+    for (const auto& border : detail::connectedPlaces(borders, all)) places.push_back(border.first);
+    return places;
+}
+
+[[noreturn]] void refuseHole(const MendedPlace& place, double maxHoleMm, const MendInput& input) {
+    std::string text = "mend: a hole near " + textOf(place.middleMm) + " is " +
                        formatBound(place.spanMm, 2) + " mm wide, more than maxHoleMm, " +
-                       formatMeasure(maxHoleMm) + " mm");
+                       formatMeasure(maxHoleMm) + " mm";
+    const auto borders = borderPlaces(input.mesh.points, [&](const auto& add) {
+        for (const auto& [a, b] : input.borders) add(a, b);
+    });
+    if (!borders.empty() && borders[0].spanMm > place.spanMm) {
+        text += "; the widest border spans " + formatBound(borders[0].spanMm, 2) + " mm";
+    }
+    throw InvalidInput(text);
 }
 
 [[noreturn]] void refuseNothing(double maxErrorMm) {
@@ -250,20 +269,8 @@ void requireNarrowCaps(const MendInput& input, const detail::WindingField& field
     }
     const auto places = detail::connectedPlaces(input.mesh, isFar);
     if (!places.empty() && places[0].first.spanMm > maxHoleMm) {
-        refuseHole(places[0].first, maxHoleMm);
+        refuseHole(places[0].first, maxHoleMm, input);
     }
-}
-
-/// The parts of borders that hang together, the widest first.
-/// \param give  calls its argument with the two points of each border edge
-template <class Give>
-std::vector<MendedPlace> borderPlaces(const std::vector<Vec3>& points, const Give& give) {
-    TriangleMesh borders{points, {}, {}};  // an edge as a triangle without area
-    give([&](VertexId a, VertexId b) { borders.triangles.push_back({a, b, b}); });
-    const std::vector<std::uint8_t> all(borders.triangles.size(), 1);
-    std::vector<MendedPlace> places;
-    for (const auto& border : detail::connectedPlaces(borders, all)) places.push_back(border.first);
-    return places;
 }
 
 /// Refuses a sheet without a fault but borders, one of which is too wide and has no cap. What
@@ -289,7 +296,7 @@ void requireNarrowBorders(const MendInput& input, const MendStatistics& found, d
         constexpr double kCells = 4;
         if (place.spanMm - 2 * boundMm > maxHoleMm &&
             norm(area) > kCells * spacingFor(boundMm) * place.spanMm) {
-            refuseHole(place, maxHoleMm);
+            refuseHole(place, maxHoleMm, input);
         }
     }
 }
@@ -304,7 +311,7 @@ auto filledPlaces(const MendAssembly& assembly) {
 }
 
 /// Lists the holes that were closed; refuses or opens those that are too wide.
-void judgeHoles(MendAssembly& assembly, double maxHoleMm, bool leavesOpen,
+void judgeHoles(const MendInput& input, MendAssembly& assembly, double maxHoleMm, bool leavesOpen,
                 MendStatistics& statistics) {
     std::vector<std::uint8_t> isOpened(assembly.source.size());
     for (auto& [place, triangles] : filledPlaces(assembly)) {
@@ -313,7 +320,7 @@ void judgeHoles(MendAssembly& assembly, double maxHoleMm, bool leavesOpen,
             continue;
         }
         if (!leavesOpen) {
-            refuseHole(place, maxHoleMm);
+            refuseHole(place, maxHoleMm, input);
         }
         statistics.leftOpen.push_back(place);
         for (const std::int64_t t : triangles) isOpened[t] = 1;
@@ -391,7 +398,7 @@ void rehearse(const MendInput& input, const AabbTree& tree, const detail::Windin
         }
     });
     if (borders.empty() || borders[0].spanMm + 4 * roughMm < places[0].first.spanMm) return;
-    refuseHole(places[0].first, maxHoleMm);
+    refuseHole(places[0].first, maxHoleMm, input);
 }
 
 /// Removes handles, and counts what that moves.
@@ -499,7 +506,7 @@ TriangleMesh mendPrepared(const TriangleMesh& mesh, const MendInput& input, cons
         findBridges(input, lattice, boundMm - thinMm, assembly);
         const std::vector<std::uint64_t> cells = cellsWithSurface(assembly);
         detail::thin(tree, thinMm, assembly);
-        judgeHoles(assembly, maxHoleMm, options.leavesHolesOpen, statistics);
+        judgeHoles(input, assembly, maxHoleMm, options.leavesHolesOpen, statistics);
         detail::proveDistances(input, tree, field, region, lattice, cells, assembly, boundMm,
                                statistics);
         if (std::max(statistics.resultToInputMm, statistics.inputToResultMm) >

@@ -1,31 +1,23 @@
 #include "MendDistances.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "NearnessProof.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/Parallel.h"
+#include "adaptiso/Core/Reach.h"
 #include "adaptiso/MeshQuality/HausdorffInterval.h"
 
 namespace adaptiso::detail {
 namespace {
 
-/// How far points reach: along the 13 directions of a cube's edges and diagonals.
-class Reach {
+/// Triangles at one place.
+class PlaceParts {
 public:
-    void add(const Vec3& p) {
-        for (std::size_t n = 0; n < kDirections.size(); ++n) {
-            const double along = dot(kDirections[n], p);
-            low_[n] = std::min(low_[n], along);
-            high_[n] = std::max(high_[n], along);
-        }
-    }
     void add(const Corners& c) {
-        for (const Vec3& p : c) add(p);
+        for (const Vec3& p : c) reach_.add(p);
         area_ += 0.5 * norm(areaVector2(c[0], c[1], c[2]));
         ++triangles_;
     }
@@ -33,35 +25,13 @@ public:
         MendedPlace place;
         place.areaMm2 = area_;
         place.triangles = triangles_;
-        for (std::size_t n = 0; n < kDirections.size(); ++n) {
-            const double span = (high_[n] - low_[n]) / norm(kDirections[n]);
-            place.spanMm = std::max(place.spanMm, span);
-            if (n < 3) place.middleMm[static_cast<int>(n)] = 0.5 * (low_[n] + high_[n]);
-        }
+        place.spanMm = reach_.spanMm();
+        place.middleMm = reach_.middleMm();
         return place;
     }
 
 private:
-    static constexpr std::array<Vec3, 13> kDirections{{{1, 0, 0},
-                                                       {0, 1, 0},
-                                                       {0, 0, 1},
-                                                       {1, 1, 0},
-                                                       {1, -1, 0},
-                                                       {1, 0, 1},
-                                                       {1, 0, -1},
-                                                       {0, 1, 1},
-                                                       {0, 1, -1},
-                                                       {1, 1, 1},
-                                                       {1, 1, -1},
-                                                       {1, -1, 1},
-                                                       {-1, 1, 1}}};
-    static constexpr std::array<double, 13> filled(double value) {
-        std::array<double, 13> all{};
-        all.fill(value);
-        return all;
-    }
-    std::array<double, 13> low_ = filled(std::numeric_limits<double>::infinity()),
-                           high_ = filled(-std::numeric_limits<double>::infinity());
+    Reach reach_;
     double area_ = 0;
     std::int64_t triangles_ = 0;
 };
@@ -120,10 +90,10 @@ std::vector<MendedPlace> placesOf(const MendInput& input, const std::vector<FarP
         sets.join(a, b);
         sets.join(a, c);
     }
-    std::map<std::int64_t, Reach> reaches;
+    std::map<std::int64_t, PlaceParts> reaches;
     for (const FarPiece& piece : pieces) {
         if (piece.isInner != areInner) continue;
-        Reach& reach = reaches[sets.find(input.mesh.triangles[piece.triangle][0])];
+        PlaceParts& reach = reaches[sets.find(input.mesh.triangles[piece.triangle][0])];
         for (const Corners& c : piece.parts) reach.add(c);
     }
     std::vector<MendedPlace> places;
@@ -148,7 +118,7 @@ std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> connectedPlaces(
     }
     std::vector<std::pair<MendedPlace, std::vector<std::int64_t>>> places;
     for (auto& [set, triangles] : bySet) {
-        Reach reach;
+        PlaceParts reach;
         for (const std::int64_t t : triangles) reach.add(cornersOf(mesh, t));
         places.emplace_back(reach.place(), std::move(triangles));
     }

@@ -16,6 +16,7 @@
 #include "adaptiso/Core/Memory.h"
 #include "adaptiso/Core/Parallel.h"
 #include "adaptiso/Core/ParallelSort.h"
+#include "adaptiso/Core/Reach.h"
 
 namespace adaptiso {
 
@@ -595,11 +596,15 @@ std::vector<Hole> findHoles(const TriangleMesh& mesh) {
     VertexSets sets;
     for (const Edge& edge : edges) sets.join(edge[0], edge[1]);
     std::map<VertexId, Hole> holes;  // by their smallest vertex
+    std::map<VertexId, Reach> reaches;
     for (const Edge& edge : edges) {
         const Vec3 &a = mesh.points[edge[0]], &b = mesh.points[edge[1]];
         const double lengthMm = norm(b - a);
         if (!std::isfinite(lengthMm)) continue;
         Hole& hole = holes[sets.find(edge[0])];
+        Reach& reach = reaches[sets.find(edge[0])];
+        reach.add(a);
+        reach.add(b);
         ++hole.edges;
         hole.lengthMm += lengthMm;
         hole.middleMm += 0.5 * lengthMm * (a + b);
@@ -607,6 +612,7 @@ std::vector<Hole> findHoles(const TriangleMesh& mesh) {
     std::vector<Hole> result;
     for (auto& [vertex, hole] : holes) {
         hole.middleMm = hole.lengthMm > 0 ? 1 / hole.lengthMm * hole.middleMm : mesh.points[vertex];
+        hole.spanMm = reaches.at(vertex).spanMm();
         result.push_back(hole);
     }
     std::stable_sort(result.begin(), result.end(),

@@ -238,8 +238,8 @@ private:
             add(kClosed, false,
                 counted(facts_.topology.count(TopologyDefect::BoundaryEdge), "boundary edge") +
                     ", " + counted(std::ssize(facts_.holes), "hole") + "; the longest, " +
-                    formatLength(longest.lengthMm, 1) + " mm round, around " +
-                    at(longest.middleMm));
+                    formatLength(longest.lengthMm, 1) + " mm round and " +
+                    formatLength(longest.spanMm, 1) + " mm wide, around " + at(longest.middleMm));
         }
         addDefect(kEdges, TopologyDefect::NonManifoldEdge, "edge in more than two triangles",
                   "edges in more than two triangles");
@@ -421,12 +421,7 @@ private:
         if (size.verdict == SizeVerdict::Unknown) {
             return add(kSize, Outcome::Undecided, "there is no triangle to measure");
         }
-        const auto mm = [](double value) {
-            return value < 0.1 ? formatLength(value, 4)
-                               : formatNumber(std::stod(formatFixed(value, value < 1 ? 4 : 1)));
-        };
-        std::string finding =
-            mm(size.extentMm.x) + " x " + mm(size.extentMm.y) + " x " + mm(size.extentMm.z) + " mm";
+        std::string finding = formatSizeMm(size.extentMm);
         // what is said to be for a printer is no micro-CT, nor is what is smaller than a micron
         constexpr double kMicronMm = 1e-3;
         const double longestMm = std::max({size.extentMm.x, size.extentMm.y, size.extentMm.z});

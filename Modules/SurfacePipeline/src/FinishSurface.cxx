@@ -36,6 +36,7 @@ std::string measure(const TriangleMesh& mesh, const FinishOptions& options, Surf
     record.topology = checkTopology(mesh);
     std::string faults = faultsOf(record.topology, options.border);
     if (!faults.empty()) return faults;
+    record.sizeMm = boundingBox(mesh).size();
     record.areaMm2 = surfaceArea(mesh);
     if (!record.topology.isClosed()) return faults;
     record.volumeMm3 = enclosedVolume(mesh);

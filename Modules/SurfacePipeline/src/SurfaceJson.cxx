@@ -188,6 +188,8 @@ const Figures<MadeSurface>& surfaceFigures() {
          "its middle)",
          [](Of of) { return Json(of.surface.statistics.marchingCubesTriangles); },
          "Marching cubes has", Shown::Count},
+        {"sizeMm", "of the mesh written along x, y and z of the patient, in every frame",
+         [](Of of) { return vector(of.surface.sizeMm); }, "Size", Shown::Size},
         {"areaMm2", "of the mesh written", [](Of of) { return number(of.surface.areaMm2); },
          "Area, mm²", Shown::Measure},
         {"volumeMm3", "of the mesh written; `null` if it is open",

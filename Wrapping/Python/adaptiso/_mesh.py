@@ -180,7 +180,8 @@ class Mesh(Triangles[_adaptiso.MeshData]):
         outside, and normals point outside.
 
         ``error_bound`` is of the surface moved alike. The mesh no longer knows its image, nor has it a
-        ``report``; ``frame`` stays. By rounding, triangles that nearly touch may then cross: `check` finds them.
+        ``report``; ``frame`` stays. `save` keeps a surface that was made here sound in single precision, or
+        refuses.
 
         Parameters
         ----------

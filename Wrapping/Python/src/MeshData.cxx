@@ -182,6 +182,7 @@ std::shared_ptr<MeshData> MeshData::fromArrays(
 std::shared_ptr<MeshData> MeshData::moved(const AffineTransform& transform) const {
     auto data = alike(transformed(mesh_, transform));
     data->image_.reset();
+    data->isMade_ = isMade();
     requireFaultless(data->mesh_);
     return data;
 }
@@ -258,7 +259,7 @@ std::string MeshData::writeTo(const std::filesystem::path& path,
     turnXY(lps);
     // as the programs do; walls of labels are rounded alike on both sides instead
     std::optional<Warning> warning;
-    if (history_ || !report_.empty()) {
+    if (isMade()) {
         RoundingHarm harm =
             settleRounding(lps, format.precision, lpsToFrame(options.frame, options.volume));
         if (!history_) harm.mergedPoints = 0;  // adaptiso-simplify looks at triangles alone

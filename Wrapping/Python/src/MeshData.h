@@ -145,6 +145,8 @@ public:
     void draw(const std::string& path) const;
 
 private:
+    bool isMade() const { return isMade_ || history_ || !report_.empty(); }
+
     TriangleMesh mesh_;
     CoordinateFrame frame_ = CoordinateFrame::Ras;
     bool isFrameKnown_ = true;
@@ -153,6 +155,7 @@ private:
     std::optional<double> errorBoundMm_, requestedBoundMm_;
     std::optional<SurfaceHistory> history_;
     std::string report_;
+    bool isMade_ = false;  ///< of one that was made here, so its files are as sound as it is
 };
 
 /// That `max_error` is large for the mesh's size, if it is. \param maxErrorMm  none: not given

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "adaptiso/Core/Geometry.h"
+
 namespace adaptiso {
 
 /// `value` as a person reads it, in at most six significant digits, in the C locale: "0.333333",
@@ -67,6 +69,9 @@ std::string formatLength(double value, int digits);
 /// A bound, as formatLength() but never less than `value` (to 1e-9 of it), with one decimal more
 /// where it would be: 0.15000763 is "0.15001".
 std::string formatBound(double value, int digits = 4);
+
+/// A size in mm: "138.3 x 175.2 x 149.5 mm", below 1 mm as formatLength() with four digits.
+std::string formatSizeMm(const Vec3& mm);
 
 /// An area or a volume: as formatRounded() from 100 on, below in three significant digits.
 std::string formatMeasure(double value);

@@ -15,6 +15,7 @@ enum class Shown {
     Plain,   ///< a number, or a text as it is
     Count,   ///< "12,345"
     Bound,   ///< rounded up: formatBound()
+    Size,    ///< of three lengths: formatSizeMm()
     Measure  ///< an area or a volume: formatMeasure()
 };
 

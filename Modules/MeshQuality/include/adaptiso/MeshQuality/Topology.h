@@ -146,6 +146,7 @@ std::int64_t joinVertices(TriangleMesh& mesh);
 struct Hole {
     std::int64_t edges = 0;
     double lengthMm = 0;  ///< of all of them
+    double spanMm = 0;    ///< by its Reach
     Vec3 middleMm;        ///< mean of the edges' middles, weighted by their length
 };
 

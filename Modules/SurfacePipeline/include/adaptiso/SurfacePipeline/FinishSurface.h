@@ -33,6 +33,7 @@ struct SurfaceRecord {
     bool isPart = false;              ///< pieces were dropped
     std::int64_t madeTriangles = 0;   ///< before the pieces were dropped
     TopologyReport topology;          ///< of the kept pieces
+    Vec3 sizeMm;                      ///< along x, y and z of the patient
     double areaMm2 = 0;
     std::optional<double> roundingMm;  ///< largest move of a point by the file's digits;
                                        ///< empty when not measured
@@ -115,7 +116,7 @@ struct FinishedSurface {
 /// file's digits (settleRounding()), then checked to be sound and measured with these digits.
 ///
 /// \param mesh    extractPieces()'s, not empty; LPS mm
-/// \param record  extractPieces()'s; gets isPart, topology, areaMm2, roundingMm, volumeMm3,
+/// \param record  extractPieces()'s; gets isPart, topology, sizeMm, areaMm2, roundingMm, volumeMm3,
 ///                crossingPairs, insideOutPieces
 /// \throws NothingLeft    "no piece of the surface has as much"
 /// \throws TooFewDigits   the surface is not sound with the file's digits, or these alone are
