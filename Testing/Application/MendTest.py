@@ -274,7 +274,7 @@ class Refusals(MendTest):
 
     def test_the_command_of_adaptiso_check_closes_a_wide_hole(self):
         for name, mesh, width in (("cup.off", cup(BALL, 20), r" --max-hole 75"),
-                                  ("chip.off", (BALL[0], BALL[1][1:]), r" --max-hole [56]\.\d+")):
+                                  ("chip.off", (BALL[0], BALL[1][1:]), "")):
             self.write(name, mesh)
             done = subprocess.run([BIN / "adaptiso-check", name], cwd=self.folder, text=True, capture_output=True)
             command = re.search(rf"adaptiso-mend {name}{width} -o mended-{name}$", done.stdout, re.MULTILINE)
