@@ -20,6 +20,7 @@ namespace adaptiso::detail {
 namespace {
 
 constexpr std::size_t kMostOfRing = 4096;
+constexpr double kSlackOfRagged = 3;  ///< of a ring's mean edge
 
 /// Edges, by their ends ascending.
 std::uint64_t endsKey(VertexId a, VertexId b) {
@@ -27,13 +28,16 @@ std::uint64_t endsKey(VertexId a, VertexId b) {
            static_cast<std::uint64_t>(std::max(a, b));
 }
 
+/// Three places in a ring.
+using Places = std::array<std::size_t, 3>;
+
 /// The triangulation of a ring of the least area in space [Barequet1995], of triangles with an area
 /// and edges that are not in the mesh. Empty if no such triangulation exists.
 /// \param isTaken   whether an edge between two points is the mesh's
 /// \param isBarred  whether a triangle is not to be taken, by places in the ring, ascending
 template <class IsTaken, class IsBarred>
-std::vector<Triangle> leastArea(const std::vector<Vec3>& points, const std::vector<VertexId>& ring,
-                                const IsTaken& isTaken, const IsBarred& isBarred) {
+std::vector<Places> leastArea(const std::vector<Vec3>& points, const std::vector<VertexId>& ring,
+                              const IsTaken& isTaken, const IsBarred& isBarred) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
     const std::size_t size = ring.size();
     std::vector<double> least(size * size);  // of the part from i to j, i < j
@@ -60,14 +64,14 @@ std::vector<Triangle> leastArea(const std::vector<Vec3>& points, const std::vect
         }
     }
     if (!(least[size - 1] < kNone)) return {};
-    std::vector<Triangle> triangles;
+    std::vector<Places> triangles;
     std::vector<std::array<std::size_t, 2>> left{{0, size - 1}};
     while (!left.empty()) {
         const auto [i, j] = left.back();
         left.pop_back();
         if (j < i + 2) continue;
         const std::size_t k = apex[i * size + j];
-        triangles.push_back({ring[i], ring[k], ring[j]});
+        triangles.push_back({i, k, j});
         left.push_back({i, k});
         left.push_back({k, j});
     }
@@ -94,13 +98,17 @@ struct RingPlane {
 
     Point2 operator()(const Vec3& p) const { return {dot(u, p - origin), dot(v, p - origin)}; }
 
-    /// All points of a ring lie in it, but for rounding.
-    bool contains(const std::vector<Vec3>& points, const std::vector<VertexId>& ring) const {
-        constexpr double kRounding = 1e-5;  // of the own ring's width
-        const double roundingMm = kRounding * std::sqrt(area2);
+    /// All points of a ring lie in it, but for `farthestMm`.
+    bool contains(const std::vector<Vec3>& points, const std::vector<VertexId>& ring,
+                  double farthestMm) const {
         return std::ranges::all_of(ring, [&](VertexId p) {
-            return std::abs(dot(normal, points[p] - origin)) <= roundingMm;
+            return std::abs(dot(normal, points[p] - origin)) <= farthestMm;
         });
+    }
+
+    double roundingMm() const {
+        constexpr double kRounding = 1e-5;  // of the own ring's width
+        return kRounding * std::sqrt(area2);
     }
 };
 
@@ -155,50 +163,169 @@ bool turnTaken(const std::vector<Vec3>& points, const Vec3& normal, const EdgeSe
     return false;
 }
 
+/// The mean length of a ring's edges.
+double meanEdgeMm(const std::vector<Vec3>& points, const std::vector<VertexId>& ring) {
+    double lengthMm = 0;
+    for (std::size_t n = 0; n < ring.size(); ++n) {
+        lengthMm += norm(points[ring[(n + 1) % ring.size()]] - points[ring[n]]);
+    }
+    return lengthMm / static_cast<double>(ring.size());
+}
+
 /// Closes rings by the least area of triangles that cross no other.
 class ClearCaps {
 public:
     explicit ClearCaps(const TriangleMesh& mesh) : mesh_(mesh), tree_(mesh) {}
 
+    static constexpr std::size_t kMost = 256;  ///< of a ring; time grows with the third power
+
     /// Empty where some rounds lead to none, or those of all rings take too long.
     std::vector<Triangle> close(const std::vector<VertexId>& ring, const EdgeSet& taken) {
+        return ring.size() > kMost ? std::vector<Triangle>() : closeBut(0, ring, taken);
+    }
+
+    /// Closes rings of about one plane, the first round the others: a cut from which whole
+    /// triangles were taken. Dents of the rims are filled first. \param normal  outward, of the
+    /// plane \return  empty as close()
+    std::vector<Triangle> closeRims(std::vector<std::vector<VertexId>> rims, const Vec3& normal,
+                                    EdgeSet taken) {
+        constexpr std::size_t kMostOfRims = 512;
+        constexpr double kMostLeft = 0.25;
+        const std::size_t before = closed_.size();
+        std::vector<Triangle> triangles;
+        for (auto& rim : rims) fillDents(rim, normal, taken, triangles);
+        const std::vector<VertexId> ring = bridged(rims, taken);
+        const std::vector<Triangle> rest =
+            ring.size() > kMostOfRims ? std::vector<Triangle>() : closeBut(kMostLeft, ring, taken);
+        if (rest.empty()) {
+            closed_.resize(before);
+            return {};
+        }
+        triangles.insert(triangles.end(), rest.begin(), rest.end());
+        return triangles;
+    }
+
+private:
+    /// \param mostLeft  the part of the triangles that may cross something, and are left out
+    /// \return  empty where some rounds lead to no more, or those of all rings take too long
+    std::vector<Triangle> closeBut(double mostLeft, const std::vector<VertexId>& ring,
+                                   const EdgeSet& taken) {
         constexpr int kMostRounds = 32;
-        constexpr std::size_t kMost = 256;  // a round's time grows with the third power
         const std::size_t size = ring.size();
-        if (size > kMost) return {};
-        std::unordered_map<VertexId, std::size_t> placeOf;
-        for (std::size_t n = 0; n < size; ++n) placeOf[ring[n]] = n;
+        if (size < 3) return {};
+        std::vector<Triangle> best;
         std::vector<bool> isBarred(size * size * size);  // by places in the ring, ascending
         const auto numberOf = [&](std::size_t i, std::size_t k, std::size_t j) {
             return (i * size + k) * size + j;
         };
         for (int round = 0; round < kMostRounds; ++round) {
             stepsLeft_ -= static_cast<std::int64_t>(size * size * size / 6);
-            if (stepsLeft_ < 0) return {};
-            std::vector<Triangle> triangles = leastArea(
+            if (stepsLeft_ < 0) break;
+            const std::vector<Places> places = leastArea(
                 mesh_.points, ring,
                 [&](VertexId a, VertexId b) { return taken.contains(endsKey(a, b)); },
                 [&](std::size_t i, std::size_t k, std::size_t j) {
                     return isBarred[numberOf(i, k, j)];
                 });
-            bool isClear = true;
-            for (const Triangle& t : triangles) {
-                if (!crosses(t)) continue;
-                std::array<std::size_t, 3> at{placeOf.at(t[0]), placeOf.at(t[1]), placeOf.at(t[2])};
-                std::sort(at.begin(), at.end());
-                isBarred[numberOf(at[0], at[1], at[2])] = true;
-                isClear = false;
+            std::unordered_map<std::uint64_t, int> uses;  // of edges: a ring may pass a point twice
+            std::vector<Triangle> triangles;
+            for (const auto& [i, k, j] : places) {
+                const Triangle t{ring[i], ring[k], ring[j]};
+                bool isDoubled = false;
+                for (std::size_t n = 0; n < 3; ++n) {
+                    isDoubled = ++uses[endsKey(t[n], t[(n + 1) % 3])] > 2 || isDoubled;
+                }
+                if (isDoubled || crosses(t)) {
+                    isBarred[numberOf(i, k, j)] = true;
+                } else {
+                    triangles.push_back(t);
+                }
             }
-            if (!isClear) continue;
-            for (const Triangle& t : triangles) {
-                closed_.push_back({mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]});
-            }
-            return triangles;
+            if (places.empty()) break;
+            if (triangles.size() > best.size()) best = triangles;
+            if (triangles.size() == places.size()) break;
         }
-        return {};
+        if (static_cast<double>(best.size()) < (1 - mostLeft) * static_cast<double>(size - 2)) {
+            return {};
+        }
+        keep(best);
+        return best;
     }
 
-private:
+    void keep(const std::vector<Triangle>& triangles) {
+        for (const Triangle& t : triangles) {
+            closed_.push_back({mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]});
+        }
+    }
+
+    /// Cuts corners off a rim that lie below the line between those beside them.
+    void fillDents(std::vector<VertexId>& rim, const Vec3& normal, EdgeSet& taken,
+                   std::vector<Triangle>& triangles) {
+        constexpr double kFarthest = 3, kDepth = 0.05;  // of the mean edge
+        const double edgeMm = meanEdgeMm(mesh_.points, rim);
+        const auto isDent = [&](const Triangle& t) {
+            const Vec3 &a = mesh_.points[t[0]], &b = mesh_.points[t[1]], &c = mesh_.points[t[2]];
+            const double lengthMm = norm(c - a);
+            if (!(lengthMm > 0) || lengthMm > kFarthest * edgeMm) return false;
+            const double along = std::clamp(dot(b - a, c - a) / (lengthMm * lengthMm), 0.0, 1.0);
+            return dot(normal, a + along * (c - a) - b) > kDepth * edgeMm &&
+                   !taken.contains(endsKey(t[0], t[2])) && !isDegenerate(mesh_, t) && !crosses(t);
+        };
+        for (bool isFilled = true; isFilled && rim.size() > 3;) {
+            isFilled = false;
+            for (std::size_t n = 0; n < rim.size() && rim.size() > 3; ++n) {
+                const std::size_t next = (n + 1) % rim.size();
+                const Triangle t{rim[n], rim[next], rim[(n + 2) % rim.size()]};
+                if (!isDent(t)) continue;
+                triangles.push_back(t);
+                keep({t});
+                taken.insert(endsKey(t[0], t[2]));
+                rim.erase(rim.begin() + static_cast<std::ptrdiff_t>(next));
+                isFilled = true;
+            }
+        }
+    }
+
+    /// One ring that goes to each rim and back by the shortest way left. \param taken  gets the
+    /// ways
+    std::vector<VertexId> bridged(const std::vector<std::vector<VertexId>>& rims,
+                                  EdgeSet& taken) const {
+        std::vector<VertexId> ring = rims.front();
+        std::vector<std::uint8_t> isJoined(rims.size());
+        for (std::size_t joined = 1; joined < rims.size(); ++joined) {
+            double least = std::numeric_limits<double>::infinity();
+            std::size_t rim = 0, from = 0, to = 0;
+            for (std::size_t r = 1; r < rims.size(); ++r) {
+                if (isJoined[r] != 0) continue;
+                for (std::size_t i = 0; i < ring.size(); ++i) {
+                    for (std::size_t k = 0; k < rims[r].size(); ++k) {
+                        const double squared =
+                            squaredNorm(mesh_.points[ring[i]] - mesh_.points[rims[r][k]]);
+                        if (squared >= least || ring[i] == rims[r][k] ||
+                            taken.contains(endsKey(ring[i], rims[r][k]))) {
+                            continue;
+                        }
+                        least = squared;
+                        rim = r;
+                        from = i;
+                        to = k;
+                    }
+                }
+            }
+            if (rim == 0) return {};
+            isJoined[rim] = 1;
+            const std::vector<VertexId>& other = rims[rim];
+            taken.insert(endsKey(ring[from], other[to]));
+            std::vector<VertexId> way(other.begin() + static_cast<std::ptrdiff_t>(to), other.end());
+            way.insert(way.end(), other.begin(),
+                       other.begin() + static_cast<std::ptrdiff_t>(to) + 1);
+            way.push_back(ring[from]);
+            ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(from) + 1, way.begin(),
+                        way.end());
+        }
+        return ring;
+    }
+
     bool crosses(const Triangle& t) const {
         const Corners own{mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]};
         BoundingBox box = boxOf(own);
@@ -253,7 +380,9 @@ std::vector<Triangle> flatCap(const TriangleMesh& mesh, const std::vector<Vertex
 /// Rings in one plane, the one round the others first: a cut through a solid with cavities.
 class RingGroups {
 public:
-    RingGroups(const TriangleMesh& mesh, const std::vector<std::vector<VertexId>>& rings)
+    /// \param slack  how far points may lie off the plane, in mean edges of a ring; 0: by rounding
+    RingGroups(const TriangleMesh& mesh, const std::vector<std::vector<VertexId>>& rings,
+               double slack)
         : mesh_(mesh), points_(mesh.points), rings_(rings) {
         const std::vector<Vec3>& points = points_;
         for (const auto& ring : rings) {
@@ -262,9 +391,14 @@ public:
             for (const VertexId v : ring) boxes_.back().add(points[v]);
         }
         for (std::size_t n = 0; n < rings.size(); ++n) {
-            isFlat_.push_back(planes_[n].contains(points, rings[n]));
+            slackMm_.push_back(
+                std::max(planes_[n].roundingMm(), slack * meanEdgeMm(points, rings[n])));
+            isFlat_.push_back(planes_[n].contains(points, rings[n], slackMm_[n]));
         }
     }
+
+    const RingPlane& planeOf(std::size_t ring) const { return planes_[ring]; }
+    bool isFlat(std::size_t ring) const { return isFlat_[ring]; }
 
     /// The groups of two rings or more, by their numbers. What lies in a cavity's ring is another
     /// solid, with a group of its own.
@@ -345,7 +479,8 @@ private:
         constexpr double kParallel = 0.9;
         const RingPlane &own = planes_[inner], &plane = planes_[outer];
         if (own.area2 >= plane.area2 || std::abs(dot(own.normal, plane.normal)) < kParallel ||
-            !boxes_[outer].overlaps(boxes_[inner]) || !plane.contains(points_, rings_[inner])) {
+            !boxes_[outer].overlaps(boxes_[inner]) ||
+            !plane.contains(points_, rings_[inner], slackMm_[outer])) {
             return false;
         }
         // of an edge: a corner may be the outer one's
@@ -370,6 +505,7 @@ private:
     const std::vector<std::vector<VertexId>>& rings_;
     std::vector<RingPlane> planes_;
     std::vector<BoundingBox> boxes_;
+    std::vector<double> slackMm_;
     std::vector<bool> isFlat_;
 };
 
@@ -411,8 +547,8 @@ private:
     std::unordered_map<VertexId, Vec3> normals_;  ///< where a border meets itself
 };
 
-/// What goes beside cap triangles that cross something: those around them in a plane cap, the whole
-/// of any other, or where half of a plane cap would go.
+/// What goes beside cap triangles that cross something: those around them in a cap that goes in
+/// parts, the whole of any other, or where half of it would go.
 void widenWithinCaps(const MendInput& input, std::vector<std::uint8_t>& isDropped) {
     constexpr int kRounds = 2;  // over edges
     const std::int64_t first = input.firstCap();
@@ -433,11 +569,11 @@ void widenWithinCaps(const MendInput& input, std::vector<std::uint8_t>& isDroppe
             });
         }
     }
-    std::vector<std::array<std::size_t, 2>> counts(input.capIsPlane.size());  // kept, dropped
+    std::vector<std::array<std::size_t, 2>> counts(input.capGoesInParts.size());  // kept, dropped
     for (std::size_t n = 0; n < isDropped.size(); ++n) ++counts[input.capOf[n]][isDropped[n]];
     for (std::size_t n = 0; n < isDropped.size(); ++n) {
         const auto& [kept, dropped] = counts[input.capOf[n]];
-        if (dropped > (input.capIsPlane[input.capOf[n]] != 0 ? kept : 0)) isDropped[n] = 1;
+        if (dropped > (input.capGoesInParts[input.capOf[n]] != 0 ? kept : 0)) isDropped[n] = 1;
     }
 }
 
@@ -506,40 +642,65 @@ bool addCaps(MendInput& input, CapKind kind) {
         if (isOnRing[edge.a] != 0 && isOnRing[edge.b] != 0) taken.insert(endsKey(edge.a, edge.b));
     }
     std::optional<ClearCaps> clear;
-    const std::size_t before = input.capIsPlane.size();
+    const std::size_t before = input.capGoesInParts.size();
     const auto add = [&](const std::vector<Triangle>& triangles, bool isPlane) {
         for (const auto& [a, b, c] : triangles) {
             taken.insert({endsKey(a, b), endsKey(b, c), endsKey(c, a)});
         }
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
         input.capOf.insert(input.capOf.end(), triangles.size(),
-                           static_cast<std::uint32_t>(input.capIsPlane.size()));
-        input.capIsPlane.push_back(isPlane ? 1 : 0);
+                           static_cast<std::uint32_t>(input.capGoesInParts.size()));
+        input.capGoesInParts.push_back(isPlane ? 1 : 0);
     };
+    // 0: open, 1: closed, 2: of a ragged cut, which no flat cap closes
     std::vector<std::uint8_t> isClosed(rings.size());
-    if (kind == CapKind::Flat) {
-        const RingGroups nested(mesh, rings);
-        for (const std::vector<std::size_t>& group : nested.groups()) {
-            const std::vector<Triangle> triangles = nested.between(group, taken);
-            if (triangles.empty()) continue;
-            for (const std::size_t n : group) isClosed[n] = 1;
-            add(triangles, true);
+    const auto addGroup = [&](const std::vector<std::size_t>& group,
+                              const std::vector<Triangle>& triangles, bool isPlane) {
+        if (triangles.empty()) return;
+        for (const std::size_t n : group) isClosed[n] = 1;
+        add(triangles, isPlane);
+    };
+    if (kind != CapKind::FlatAlone) {
+        const RingGroups nested(mesh, rings, 0), ragged(mesh, rings, kSlackOfRagged);
+        for (const auto& group : nested.groups()) {
+            if (!isByArea) addGroup(group, nested.between(group, taken), true);
+        }
+        for (const auto& group : ragged.groups()) {
+            const auto areOpen =
+                std::ranges::all_of(group, [&](std::size_t n) { return isClosed[n] == 0; });
+            if (!areOpen ||
+                std::ranges::all_of(group, [&](std::size_t n) { return nested.isFlat(n); }))
+                continue;
+            for (const std::size_t n : group) isClosed[n] = 2;
+            if (!isByArea) continue;
+            std::vector<std::vector<VertexId>> rims;
+            for (const std::size_t n : group) rims.push_back(rings[n]);
+            if (!clear) clear.emplace(mesh);
+            addGroup(group,
+                     clear->closeRims(std::move(rims), ragged.planeOf(group[0]).normal, taken),
+                     true);
         }
     }
     for (std::size_t n = 0; n < rings.size(); ++n) {
         const std::vector<VertexId>& ring = rings[n];
-        if (isClosed[n] != 0 || ring.size() < 3 || ring.size() > kMostOfRing) continue;
+        const bool isLeft = isClosed[n] == 0 || (isByArea && isClosed[n] == 2);
+        if (!isLeft || ring.size() < 3 || ring.size() > kMostOfRing) continue;
+        const RingPlane plane(mesh.points, ring);
         std::vector<Triangle> triangles;
+        bool isRagged = false;
         if (!isByArea) {
             triangles = flatCap(mesh, ring, taken);
         } else {
             if (!clear) clear.emplace(mesh);
-            triangles = clear->close(ring, taken);
+            isRagged = ring.size() > ClearCaps::kMost;
+            triangles = isRagged ? clear->closeRims({ring}, plane.normal, taken)
+                                 : clear->close(ring, taken);
         }
-        if (!triangles.empty())
-            add(triangles, !isByArea && RingPlane(mesh.points, ring).contains(mesh.points, ring));
+        if (triangles.empty()) continue;
+        const bool isPlane = !isByArea && plane.contains(mesh.points, ring, plane.roundingMm());
+        add(triangles, isPlane || isRagged);
     }
-    return input.capIsPlane.size() != before;
+    return input.capGoesInParts.size() != before;
 }
 
 bool dropCrossingCaps(MendInput& input) {

@@ -12,7 +12,10 @@ std::vector<std::vector<VertexId>> borderRings(const MendInput& input);
 enum class CapKind : std::uint8_t {
     Flat,       ///< in the plane that fits best, of up to 4096 edges; one for borders of one plane
     FlatAlone,  ///< the same, one for each border
-    LeastArea   ///< of the least area that crosses nothing, of up to 256 edges
+    /// Of the least area that crosses nothing, of up to 256 edges; one for borders of about one
+    /// plane, of up to 512 edges when their dents are filled, of which triangles that cross
+    /// something are left out.
+    LeastArea
 };
 
 /// Closes holes by triangles between the corners of their borders: appends them to the mesh.
@@ -20,8 +23,9 @@ enum class CapKind : std::uint8_t {
 /// \return  whether there are any
 bool addCaps(MendInput& input, CapKind kind);
 
-/// Takes away caps that cross anything, and all their crossings. A plane cap crosses by rounding:
-/// it goes around these places alone, where that is less than half of it.
+/// Takes away caps that cross anything, and all their crossings. A plane cap crosses by rounding,
+/// and one of several borders here and there: either goes around these places alone, where that is
+/// less than half of it.
 /// \post edges are not found
 /// \return  whether there were any
 bool dropCrossingCaps(MendInput& input);

@@ -28,9 +28,9 @@ struct MendInput {
         bool isSound = false;
     };
 
-    TriangleMesh mesh;                 ///< has the input's points; caps of holes come last
-    std::vector<std::uint32_t> capOf;  ///< of each triangle from firstCap() on, its cap
-    std::vector<std::uint8_t> capIsPlane;  ///< of a cap: it lies in the plane of all its corners
+    TriangleMesh mesh;                         ///< has the input's points; caps of holes come last
+    std::vector<std::uint32_t> capOf;          ///< of each triangle from firstCap() on, its cap
+    std::vector<std::uint8_t> capGoesInParts;  ///< of a cap: a part of it may be taken away alone
     std::vector<std::array<std::uint32_t, 3>> edgeOf;  ///< of a triangle, from corner i to i + 1
     std::vector<Edge> edges;
     std::vector<std::array<std::uint32_t, 2>> borders;  ///< edges in one triangle, caps aside

@@ -172,6 +172,32 @@ TEST(Mend, ClosesACutWhereItsRingsMeetAtACorner) {
     EXPECT_NEAR(enclosedVolume(mended.mesh), 600 - (3 + 6 + 1.5), 1e-9);
 }
 
+/// A hollow ball from which all triangles above a plane were taken: both rims are ragged.
+TEST(Mend, ClosesARaggedCutThroughACavityByItsCorners) {
+    TriangleMesh inner = bare(icosphere(4, {0, 0, 0}, 6));
+    flipOrientation(inner);
+    TriangleMesh cut = merged({bare(icosphere(5, {0, 0, 0}, 10)), inner});
+    std::erase_if(cut.triangles, [&](const Triangle& t) {
+        return std::ranges::any_of(t, [&](VertexId v) {
+            const Vec3& p = cut.points[v];
+            return p.z + 0.3 * p.x > 2;
+        });
+    });
+    MendOptions options = within(0.05);
+    options.maxHoleMm = 30;
+    const Mended mended = mend(cut, options);
+    expectMended(mended);
+    EXPECT_EQ(mended.statistics.cells, 0);  // the lattice makes 400,000 triangles
+    EXPECT_LT(mended.mesh.triangles.size(), cut.triangles.size() + 600);
+    const double depth = 2 / std::sqrt(1.09);  // of the plane
+    const auto capOf = [&](double radius) {
+        const double height = radius - depth;
+        return std::numbers::pi * height * height * (radius - height / 3);
+    };
+    const double whole = 4.0 / 3 * std::numbers::pi * (1000 - 216);
+    EXPECT_NEAR(enclosedVolume(mended.mesh), whole - capOf(10) + capOf(6), 0.02 * whole);
+}
+
 /// A drum without its upper lid, a corner of whose wall reaches over the rim's plane by a hair: the
 /// lid crosses the wall there, and is made anew around that place alone.
 TEST(Mend, KeepsMostOfALidThatCrossesTheWallByAHair) {
