@@ -170,6 +170,10 @@ TEST_F(BatchSummaryTest, DrawsChartsOfFiveRunsAndMore) {
     EXPECT_NE(text.find("more than 3.5 robust standard deviations"), std::string::npos);
     EXPECT_EQ(text.find("<circle class=\"apart\""), text.rfind("<circle class=\"apart\""));
     EXPECT_EQ(pageOf(runs(6, 1003)).find("Outliers:"), std::string::npos);
+    // six lie between 1000 and 1005: an axis to 1900 would show them as one dot
+    EXPECT_NE(text.find(">≥ 1,015 mm³</text>"), std::string::npos);
+    EXPECT_NE(text.find("Dots at an end with ≤ or ≥"), std::string::npos);
+    EXPECT_EQ(pageOf(runs(6, 1003)).find("≥"), std::string::npos);
 }
 
 TEST_F(BatchSummaryTest, DrawsNoChartOfWhatNoAxisHolds) {

@@ -98,6 +98,12 @@ class Simplify(unittest.TestCase):
             with self.assertRaises(adaptiso.Error) as caught:
                 adaptiso.simplify(vertices, faces, **arguments)
             self.assertNotIn("\n", str(caught.exception))
+        image = np.zeros((4, 4, 4), np.float32)
+        for make in (lambda **aims: adaptiso.simplify(vertices, faces, **aims),
+                     lambda **aims: adaptiso.surface(image, 0.5, **aims),
+                     lambda **aims: adaptiso.labels(image.astype(np.uint8), **aims)):
+            with self.assertRaisesRegex(adaptiso.Error, "^triangles and reduction: are two ways to ask for one count$"):
+                make(triangles=5, reduction=0.5)
         with self.assertRaisesRegex(adaptiso.Error, r"^faces 0\.5: must be a table of integers; max_error=0\.5\?$"):
             adaptiso.simplify(adaptiso.Mesh(vertices, faces), 0.5)
         with self.assertRaises(adaptiso.Error):

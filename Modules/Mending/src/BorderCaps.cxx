@@ -13,6 +13,7 @@
 #include "adaptiso/Core/AabbTree.h"
 #include "adaptiso/Core/Buckets.h"
 #include "adaptiso/Core/PolygonTriangulation.h"
+#include "adaptiso/Extraction/Components.h"
 #include "adaptiso/MeshQuality/SelfIntersection.h"
 #include "adaptiso/MeshQuality/Topology.h"
 
@@ -99,8 +100,8 @@ struct RingPlane {
     Point2 operator()(const Vec3& p) const { return {dot(u, p - origin), dot(v, p - origin)}; }
 
     /// All points of a ring lie in it, but for `farthestMm`.
-    bool contains(const std::vector<Vec3>& points, const std::vector<VertexId>& ring,
-                  double farthestMm) const {
+    template <class Ring>
+    bool contains(const std::vector<Vec3>& points, const Ring& ring, double farthestMm) const {
         return std::ranges::all_of(ring, [&](VertexId p) {
             return std::abs(dot(normal, points[p] - origin)) <= farthestMm;
         });
@@ -172,6 +173,16 @@ double meanEdgeMm(const std::vector<Vec3>& points, const std::vector<VertexId>& 
     return lengthMm / static_cast<double>(ring.size());
 }
 
+/// Edges of the mesh, and those of a cap that is being made.
+struct TakenEdges {
+    const EdgeSet& ofMesh;
+    EdgeSet own{};
+
+    bool contains(VertexId a, VertexId b) const {
+        return ofMesh.contains(endsKey(a, b)) || own.contains(endsKey(a, b));
+    }
+};
+
 /// Closes rings by the least area of triangles that cross no other.
 class ClearCaps {
 public:
@@ -181,22 +192,33 @@ public:
 
     /// Empty where some rounds lead to none, or those of all rings take too long.
     std::vector<Triangle> close(const std::vector<VertexId>& ring, const EdgeSet& taken) {
-        return ring.size() > kMost ? std::vector<Triangle>() : closeBut(0, ring, taken);
+        return ring.size() > kMost ? std::vector<Triangle>()
+                                   : closeBut(0, ring, {taken}, stepsLeft_);
     }
 
     /// Closes rings of about one plane, the first round the others: a cut from which whole
-    /// triangles were taken. Dents of the rims are filled first. \param normal  outward, of the
-    /// plane \return  empty as close()
+    /// triangles were taken. Dents of the rims are filled first.
+    ///
+    /// \param normal  outward, of the plane
+    /// \return  empty as close()
     std::vector<Triangle> closeRims(std::vector<std::vector<VertexId>> rims, const Vec3& normal,
-                                    EdgeSet taken) {
+                                    const EdgeSet& ofMesh) {
         constexpr std::size_t kMostOfRims = 512;
         constexpr double kMostLeft = 0.25;
+        const auto sizeOfAll = [&] {
+            std::size_t size = 2 * (rims.size() - 1);
+            for (const auto& rim : rims) size += rim.size();
+            return size;
+        };
+        if (sizeOfAll() > 4 * kMostOfRims) return {};
         const std::size_t before = closed_.size();
-        std::vector<Triangle> triangles;
+        TakenEdges taken{ofMesh};
+        std::vector<Triangle> triangles, rest;
         for (auto& rim : rims) fillDents(rim, normal, taken, triangles);
-        const std::vector<VertexId> ring = bridged(rims, taken);
-        const std::vector<Triangle> rest =
-            ring.size() > kMostOfRims ? std::vector<Triangle>() : closeBut(kMostLeft, ring, taken);
+        if (sizeOfAll() <= kMostOfRims) {
+            const std::vector<VertexId> ring = bridged(rims, taken);
+            rest = closeBut(kMostLeft, ring, taken, raggedStepsLeft_);
+        }
         if (rest.empty()) {
             closed_.resize(before);
             return {};
@@ -209,7 +231,7 @@ private:
     /// \param mostLeft  the part of the triangles that may cross something, and are left out
     /// \return  empty where some rounds lead to no more, or those of all rings take too long
     std::vector<Triangle> closeBut(double mostLeft, const std::vector<VertexId>& ring,
-                                   const EdgeSet& taken) {
+                                   const TakenEdges& taken, std::int64_t& stepsLeft) {
         constexpr int kMostRounds = 32;
         const std::size_t size = ring.size();
         if (size < 3) return {};
@@ -219,11 +241,10 @@ private:
             return (i * size + k) * size + j;
         };
         for (int round = 0; round < kMostRounds; ++round) {
-            stepsLeft_ -= static_cast<std::int64_t>(size * size * size / 6);
-            if (stepsLeft_ < 0) break;
+            stepsLeft -= static_cast<std::int64_t>(size * size * size / 6);
+            if (stepsLeft < 0) break;
             const std::vector<Places> places = leastArea(
-                mesh_.points, ring,
-                [&](VertexId a, VertexId b) { return taken.contains(endsKey(a, b)); },
+                mesh_.points, ring, [&](VertexId a, VertexId b) { return taken.contains(a, b); },
                 [&](std::size_t i, std::size_t k, std::size_t j) {
                     return isBarred[numberOf(i, k, j)];
                 });
@@ -259,7 +280,7 @@ private:
     }
 
     /// Cuts corners off a rim that lie below the line between those beside them.
-    void fillDents(std::vector<VertexId>& rim, const Vec3& normal, EdgeSet& taken,
+    void fillDents(std::vector<VertexId>& rim, const Vec3& normal, TakenEdges& taken,
                    std::vector<Triangle>& triangles) {
         constexpr double kFarthest = 3, kDepth = 0.05;  // of the mean edge
         const double edgeMm = meanEdgeMm(mesh_.points, rim);
@@ -269,7 +290,7 @@ private:
             if (!(lengthMm > 0) || lengthMm > kFarthest * edgeMm) return false;
             const double along = std::clamp(dot(b - a, c - a) / (lengthMm * lengthMm), 0.0, 1.0);
             return dot(normal, a + along * (c - a) - b) > kDepth * edgeMm &&
-                   !taken.contains(endsKey(t[0], t[2])) && !isDegenerate(mesh_, t) && !crosses(t);
+                   !taken.contains(t[0], t[2]) && !isDegenerate(mesh_, t) && !crosses(t);
         };
         for (bool isFilled = true; isFilled && rim.size() > 3;) {
             isFilled = false;
@@ -279,17 +300,18 @@ private:
                 if (!isDent(t)) continue;
                 triangles.push_back(t);
                 keep({t});
-                taken.insert(endsKey(t[0], t[2]));
+                taken.own.insert(endsKey(t[0], t[2]));
                 rim.erase(rim.begin() + static_cast<std::ptrdiff_t>(next));
                 isFilled = true;
             }
         }
     }
 
-    /// One ring that goes to each rim and back by the shortest way left. \param taken  gets the
-    /// ways
+    /// One ring that goes to each rim and back by the shortest way left, empty if there is none.
+    ///
+    /// \param taken  gets the ways
     std::vector<VertexId> bridged(const std::vector<std::vector<VertexId>>& rims,
-                                  EdgeSet& taken) const {
+                                  TakenEdges& taken) const {
         std::vector<VertexId> ring = rims.front();
         std::vector<std::uint8_t> isJoined(rims.size());
         for (std::size_t joined = 1; joined < rims.size(); ++joined) {
@@ -302,7 +324,7 @@ private:
                         const double squared =
                             squaredNorm(mesh_.points[ring[i]] - mesh_.points[rims[r][k]]);
                         if (squared >= least || ring[i] == rims[r][k] ||
-                            taken.contains(endsKey(ring[i], rims[r][k]))) {
+                            taken.contains(ring[i], rims[r][k])) {
                             continue;
                         }
                         least = squared;
@@ -315,7 +337,7 @@ private:
             if (rim == 0) return {};
             isJoined[rim] = 1;
             const std::vector<VertexId>& other = rims[rim];
-            taken.insert(endsKey(ring[from], other[to]));
+            taken.own.insert(endsKey(ring[from], other[to]));
             std::vector<VertexId> way(other.begin() + static_cast<std::ptrdiff_t>(to), other.end());
             way.insert(way.end(), other.begin(),
                        other.begin() + static_cast<std::ptrdiff_t>(to) + 1);
@@ -345,7 +367,7 @@ private:
     const TriangleMesh& mesh_;
     AabbTree tree_;  ///< of the triangles that were there first
     std::vector<Corners> closed_;
-    std::int64_t stepsLeft_ = 500'000'000;  ///< of all rounds
+    std::int64_t stepsLeft_ = 500'000'000, raggedStepsLeft_ = 1'000'000'000;  ///< of all rounds
 };
 
 /// In the plane that fits best. Empty where the ring crosses itself in it, or an edge is the
@@ -395,6 +417,21 @@ public:
                 std::max(planes_[n].roundingMm(), slack * meanEdgeMm(points, rings[n])));
             isFlat_.push_back(planes_[n].contains(points, rings[n], slackMm_[n]));
         }
+    }
+
+    /// A group of rims of one sheet that nowhere leads away from their plane: a side, such as a
+    /// lampshade's, between two openings, and no cut.
+    /// \param pieces  of the mesh's points \param ofPiece  the points of each
+    bool isSide(const std::vector<std::size_t>& group, const ComponentLabels& pieces,
+                const Buckets<VertexId>& ofPiece) const {
+        const std::size_t outer = group.front();
+        const std::int64_t piece = pieces.ofVertex[rings_[outer][0]];
+        const bool isShared = std::any_of(group.begin() + 1, group.end(), [&](std::size_t inner) {
+            return pieces.ofVertex[rings_[inner][0]] == piece;
+        });
+        if (!isShared) return false;
+        const auto of = ofPiece.of(static_cast<std::size_t>(piece));
+        return planes_[outer].contains(points_, of, 2 * slackMm_[outer]);
     }
 
     const RingPlane& planeOf(std::size_t ring) const { return planes_[ring]; }
@@ -474,13 +511,18 @@ public:
     }
 
 private:
+    bool overlaps(std::size_t outer, std::size_t inner) const {
+        BoundingBox box = boxes_[outer];
+        box.widen(slackMm_[outer]);
+        return box.overlaps(boxes_[inner]);
+    }
+
     /// The inner one lies in the plane of the outer one, and begins in it. \pre both are flat
     bool isWithin(std::size_t inner, std::size_t outer) const {
         constexpr double kParallel = 0.9;
         const RingPlane &own = planes_[inner], &plane = planes_[outer];
         if (own.area2 >= plane.area2 || std::abs(dot(own.normal, plane.normal)) < kParallel ||
-            !boxes_[outer].overlaps(boxes_[inner]) ||
-            !plane.contains(points_, rings_[inner], slackMm_[outer])) {
+            !overlaps(outer, inner) || !plane.contains(points_, rings_[inner], slackMm_[outer])) {
             return false;
         }
         // of an edge: a corner may be the outer one's
@@ -665,12 +707,23 @@ bool addCaps(MendInput& input, CapKind kind) {
         for (const auto& group : nested.groups()) {
             if (!isByArea) addGroup(group, nested.between(group, taken), true);
         }
-        for (const auto& group : ragged.groups()) {
-            const auto areOpen =
+        const auto raggedGroups = ragged.groups();
+        ComponentLabels pieces;
+        Buckets<VertexId> ofPiece;
+        if (!raggedGroups.empty()) {
+            pieces = labelComponents(mesh);
+            ofPiece.assign(static_cast<std::size_t>(pieces.count), [&](const auto& give) {
+                for (VertexId v = 0; v < std::ssize(pieces.ofVertex); ++v) {
+                    give(static_cast<std::size_t>(pieces.ofVertex[v]), v);
+                }
+            });
+        }
+        for (const auto& group : raggedGroups) {
+            const bool areOpen =
                 std::ranges::all_of(group, [&](std::size_t n) { return isClosed[n] == 0; });
-            if (!areOpen ||
-                std::ranges::all_of(group, [&](std::size_t n) { return nested.isFlat(n); }))
-                continue;
+            const bool areFlat =
+                std::ranges::all_of(group, [&](std::size_t n) { return nested.isFlat(n); });
+            if (!areOpen || areFlat || ragged.isSide(group, pieces, ofPiece)) continue;
             for (const std::size_t n : group) isClosed[n] = 2;
             if (!isByArea) continue;
             std::vector<std::vector<VertexId>> rims;
@@ -692,9 +745,10 @@ bool addCaps(MendInput& input, CapKind kind) {
             triangles = flatCap(mesh, ring, taken);
         } else {
             if (!clear) clear.emplace(mesh);
-            isRagged = ring.size() > ClearCaps::kMost;
-            triangles = isRagged ? clear->closeRims({ring}, plane.normal, taken)
-                                 : clear->close(ring, taken);
+            constexpr std::size_t kFewest = 32;  // or the lattice makes little of it
+            triangles = clear->close(ring, taken);
+            isRagged = triangles.empty() && ring.size() >= kFewest;
+            if (isRagged) triangles = clear->closeRims({ring}, plane.normal, taken);
         }
         if (triangles.empty()) continue;
         const bool isPlane = !isByArea && plane.contains(mesh.points, ring, plane.roundingMm());

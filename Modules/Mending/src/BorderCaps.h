@@ -12,9 +12,9 @@ std::vector<std::vector<VertexId>> borderRings(const MendInput& input);
 enum class CapKind : std::uint8_t {
     Flat,       ///< in the plane that fits best, of up to 4096 edges; one for borders of one plane
     FlatAlone,  ///< the same, one for each border
-    /// Of the least area that crosses nothing, of up to 256 edges; one for borders of about one
-    /// plane, of up to 512 edges when their dents are filled, of which triangles that cross
-    /// something are left out.
+    /// Of the least area that crosses nothing, of up to 256 edges. Where none is found, and for
+    /// longer borders or several of about one plane, of up to 512 edges when their dents are
+    /// filled: triangles that cross something are left out, a quarter at most.
     LeastArea
 };
 

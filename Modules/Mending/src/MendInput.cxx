@@ -322,23 +322,23 @@ void turnSheetsOutward(MendInput& input, Sheets& sheets) {
     }
 }
 
-/// Points whose triangles are more than one fan.
-std::vector<std::uint32_t> findBadVertices(const MendInput& input) {
+/// Points whose triangles are more than one fan. \param count  of the triangles that are looked at
+std::vector<std::uint32_t> findBadVertices(const MendInput& input, std::int64_t count) {
     const auto& triangles = input.mesh.triangles;
-    DisjointSets corners(3 * std::ssize(triangles));
+    DisjointSets corners(3 * count);
     const auto cornerAt = [&](std::int64_t t, std::uint32_t v) {
         const Triangle& of = triangles[t];
         return 3 * t + (of[0] == v ? 0 : of[1] == v ? 1 : 2);
     };
     for (const MendInput::Edge& edge : input.edges) {
-        if (!edge.isSound) continue;
+        if (!edge.isSound || std::ranges::max(edge.triangles) >= count) continue;
         for (const std::uint32_t v : {edge.a, edge.b}) {
             corners.join(cornerAt(edge.triangles[0], v), cornerAt(edge.triangles[1], v));
         }
     }
     std::vector<std::int64_t> fan(input.mesh.points.size(), -1);
     std::vector<std::uint32_t> bad;
-    for (std::int64_t c = 0; c < 3 * std::ssize(triangles); ++c) {
+    for (std::int64_t c = 0; c < 3 * count; ++c) {
         const VertexId v = triangles[c / 3][c % 3];
         const std::int64_t set = corners.find(c);
         if (fan[v] == -1) fan[v] = set;
@@ -427,8 +427,14 @@ void requireCountable(const TriangleMesh& mesh) {
 
 void judgeSurface(MendInput& input, MendStatistics& statistics) {
     judgeEdges(input, statistics);
-    input.badVertices = findBadVertices(input);
+    input.badVertices = findBadVertices(input, std::ssize(input.mesh.triangles));
     statistics.badVertices = std::ssize(input.badVertices);
+    if (input.badVertices.empty() || input.capOf.empty()) return;
+    // a cap that lacks a part is no fault of what was given
+    std::vector<std::uint8_t> wasBad(input.mesh.points.size());
+    for (const std::uint32_t v : findBadVertices(input, input.firstCap())) wasBad[v] = 1;
+    statistics.badVertices =
+        std::ranges::count_if(input.badVertices, [&](std::uint32_t v) { return wasBad[v] != 0; });
 }
 
 MendInput prepareInput(const TriangleMesh& mesh, MendStatistics& statistics) {

@@ -59,6 +59,9 @@ void joinSectors(std::vector<PlanarCorner>& corners, const std::vector<VertexId>
             rays.push_back({next.u - at.u, next.v - at.v, at.next, true});
             rays.push_back({previous.u - at.u, previous.v - at.v, at.previous, false});
         }
+        if (std::ranges::any_of(rays, [](const Ray& ray) { return ray.u == 0 && ray.v == 0; })) {
+            continue;
+        }
         std::ranges::sort(rays, std::less<>());
         const bool isClear = std::ranges::adjacent_find(rays, [](const Ray& a, const Ray& b) {
                                  return !(a < b) || a.isOut == b.isOut;

@@ -159,9 +159,31 @@ struct Chart {
     std::vector<std::optional<double>> values{};  ///< finite, of each of these rows
     std::vector<Outlier> outliers{};              ///< indices are those of `values`
     double least = 0, most = 0, median = 0;
+    double from = 0, to = 0;   ///< of those that are alike
+    double low = 0, high = 0;  ///< of the axis: those alike take a fifth of it at least
 
+    bool isCut() const { return low > least || high < most; }
     std::string text(double value) const { return formatMeasure(value) + " " + unit; }
 };
+
+/// What the axis shows: a value far from all others is drawn at its end.
+void chooseAxis(Chart& chart) {
+    std::vector<bool> isApart(chart.values.size());
+    for (const Outlier& outlier : chart.outliers) isApart[outlier.index] = true;
+    chart.from = chart.most;
+    chart.to = chart.least;
+    for (std::size_t n = 0; n < chart.values.size(); ++n) {
+        if (isApart[n]) continue;
+        chart.from = std::min(chart.from, *chart.values[n]);
+        chart.to = std::max(chart.to, *chart.values[n]);
+    }
+    chart.low = chart.least;
+    chart.high = chart.most;
+    if (!(chart.from < chart.to)) return;
+    const double room = 2 * (chart.to - chart.from);
+    chart.low = std::max(chart.low, chart.from - room);
+    chart.high = std::min(chart.high, chart.to + room);
+}
 
 std::vector<Chart> chartsOf(const Summary& summary) {
     const std::vector<SummaryRow>& rows = summary.rows;
@@ -191,6 +213,7 @@ std::vector<Chart> chartsOf(const Summary& summary) {
         chart.most = *std::max_element(values.begin(), values.end());
         chart.median = medianOf(values);
         chart.outliers = findOutliers(chart.values, summary.outliers);
+        chooseAxis(chart);
     }
     std::erase_if(charts, [](const Chart& chart) {
         return chart.least == chart.most || !std::isfinite(chart.most - chart.least);
@@ -220,7 +243,9 @@ std::string chartSvg(const Chart& chart, const std::vector<SummaryRow>& rows) {
     constexpr double kWidth = 360, kSide = 10, kTop = 20, kBase = 72, kDot = 4;
     constexpr int kBins = 42;
     const auto px = [](double length) { return formatFixed(length, 1); };
-    const auto part = [&](double v) { return (v - chart.least) / (chart.most - chart.least); };
+    const auto part = [&](double v) {
+        return (std::clamp(v, chart.low, chart.high) - chart.low) / (chart.high - chart.low);
+    };
     const auto across = [&](double v) { return kSide + (kWidth - 2 * kSide) * part(v); };
     const auto text = [&](double x, double y, const std::string& style, const std::string& words) {
         return "<text class=\"" + style + "\" x=\"" + px(x) + "\" y=\"" + px(y) + "\">" + words +
@@ -228,15 +253,11 @@ std::string chartSvg(const Chart& chart, const std::vector<SummaryRow>& rows) {
     };
     std::vector<bool> isApart(chart.values.size());
     for (const Outlier& outlier : chart.outliers) isApart[outlier.index] = true;
-    double from = chart.most, to = chart.least;  // of those that are alike
     std::vector<int> stacks(kBins + 1);
     std::vector<int> heights;
     for (std::size_t n = 0; n < chart.values.size(); ++n) {
         const double v = *chart.values[n];
         heights.push_back(stacks[static_cast<std::size_t>(std::lround(kBins * part(v)))]++);
-        if (isApart[n]) continue;
-        from = std::min(from, v);
-        to = std::max(to, v);
     }
     const int highest = *std::max_element(heights.begin(), heights.end());
     const double step = std::min(2 * kDot, (kBase - kTop - 2 * kDot) / std::max(1, highest));
@@ -244,10 +265,10 @@ std::string chartSvg(const Chart& chart, const std::vector<SummaryRow>& rows) {
         "<svg viewBox=\"0 0 " + px(kWidth) + " 98\" role=\"img\" aria-label=\"" +
         escaped(chart.title + ": " + chart.text(chart.least) + " to " + chart.text(chart.most)) +
         "\">\n";
-    if (from <= to) {
-        svg += "<rect class=\"alike\" x=\"" + px(across(from) - kDot) + "\" y=\"" + px(kTop) +
-               "\" width=\"" + px(across(to) - across(from) + 2 * kDot) + "\" height=\"" +
-               px(kBase - kTop + kDot) + "\"/>\n";
+    if (chart.from <= chart.to) {
+        svg += "<rect class=\"alike\" x=\"" + px(across(chart.from) - kDot) + "\" y=\"" + px(kTop) +
+               "\" width=\"" + px(across(chart.to) - across(chart.from) + 2 * kDot) +
+               "\" height=\"" + px(kBase - kTop + kDot) + "\"/>\n";
     }
     svg += "<path class=\"axis\" d=\"M" + px(kSide) + " 77H" + px(kWidth - kSide) + "M" +
            px(across(chart.median)) + " " + px(kTop) + "V82\"/>\n";
@@ -276,8 +297,11 @@ std::string chartSvg(const Chart& chart, const std::vector<SummaryRow>& rows) {
                         escaped(name));
         }
     }
-    return svg + text(kSide, 94, "", formatMeasure(chart.least)) +
-           text(kWidth - kSide, 94, "end", chart.text(chart.most)) + "</svg>";
+    return svg +
+           text(kSide, 94, "", (chart.low > chart.least ? "≤ " : "") + formatMeasure(chart.low)) +
+           text(kWidth - kSide, 94, "end",
+                (chart.high < chart.most ? "≥ " : "") + chart.text(chart.high)) +
+           "</svg>";
 }
 
 std::string chartsHtml(const Summary& summary) {
@@ -289,6 +313,9 @@ std::string chartsHtml(const Summary& summary) {
         "times</h2>\n<p class=\"hint\">A dot for each run, the median as a line. Marked: what "
         "lies " +
         escaped(summary.outliers.text()) + ". The shaded part holds all others.";
+    if (std::ranges::any_of(charts, &Chart::isCut)) {
+        html += " Dots at an end with ≤ or ≥ may lie beyond it.";
+    }
     if (charts.size() > kMostCharts) {
         html += " Of " + counted(std::ssize(charts), "figure") +
                 " those with the most outliers are shown.";

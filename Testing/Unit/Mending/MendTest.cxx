@@ -198,6 +198,39 @@ TEST(Mend, ClosesARaggedCutThroughACavityByItsCorners) {
     EXPECT_NEAR(enclosedVolume(mended.mesh), whole - capOf(10) + capOf(6), 0.02 * whole);
 }
 
+/// The side of a flat lampshade, whose wavy rims lie within an edge of one plane: between them is
+/// the side, no material.
+TEST(Mend, ClosesBothOpeningsOfAFlatSide) {
+    constexpr int kRound = 24;
+    for (const double height : {1.5, 3.0}) {
+        for (const double tilt : {0.0, 0.7}) {
+            TriangleMesh side;
+            for (const bool isUpper : {false, true}) {
+                for (int n = 0; n < kRound; ++n) {
+                    const double angle = 2 * std::numbers::pi * n / kRound,
+                                 radius = isUpper ? 5 : 10, x = radius * std::cos(angle),
+                                 z = (isUpper ? height : 0) + 0.05 * std::sin(5 * angle);
+                    side.points.push_back({std::cos(tilt) * x - std::sin(tilt) * z,
+                                           radius * std::sin(angle),
+                                           std::sin(tilt) * x + std::cos(tilt) * z});
+                }
+            }
+            for (VertexId n = 0; n < kRound; ++n) {
+                const VertexId a = n, b = (n + 1) % kRound;
+                side.triangles.push_back({a, b, b + kRound});
+                side.triangles.push_back({a, b + kRound, a + kRound});
+            }
+            MendOptions options = within(0.2);
+            options.maxHoleMm = 100;
+            const Mended mended = mend(side, options);
+            expectMended(mended);
+            EXPECT_EQ(checkTopology(mended.mesh).genus(), 0) << height << " " << tilt;
+            const double polygon = kRound / 2.0 * std::sin(2 * std::numbers::pi / kRound);
+            EXPECT_NEAR(enclosedVolume(mended.mesh), polygon * height / 3 * (100 + 50 + 25), 15);
+        }
+    }
+}
+
 /// A drum without its upper lid, a corner of whose wall reaches over the rim's plane by a hair: the
 /// lid crosses the wall there, and is made anew around that place alone.
 TEST(Mend, KeepsMostOfALidThatCrossesTheWallByAHair) {

@@ -354,7 +354,7 @@ void declareLabels(py::module_& module) {
            int threads, py::object progress, const std::string& subject,
            const std::string& advice) {
             LabelOptions extraction;
-            take(aimOptions(AimedSurface::Walls), extraction, options);
+            takeAims(AimedSurface::Walls, extraction, options);
             extraction.labels = labels;
             return makeLabels(volume, std::move(extraction), threads, std::move(progress), subject,
                               advice);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <string>
 
+#include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Options.h"
+#include "adaptiso/Core/SimplifyAims.h"
 
 namespace adaptiso::python {
 
@@ -28,6 +30,14 @@ void take(const Options<Owner>& rows, std::type_identity_t<Owner>& owner, const 
         const std::string name = argumentName(row.facts);
         if (!given.contains(name)) continue;
         row.put(owner, toOptionValue(given[name.c_str()], row.kind));
+    }
+}
+
+/// The same of a surface's aims. \throws InvalidInput  a count by both of its names
+inline void takeAims(AimedSurface surface, SimplifyAims& aims, const py::dict& given) {
+    take(aimOptions(surface), aims, given);
+    if (aims.maxTriangles && aims.reduction) {
+        throw InvalidInput("triangles and reduction: are two ways to ask for one count");
     }
 }
 

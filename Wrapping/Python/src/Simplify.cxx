@@ -69,7 +69,7 @@ void declareSimplify(py::module_& module) {
         "simplify_mesh",
         [](const MeshData& mesh, const py::dict& options, int threads, py::object progress) {
             SimplifyOptions simplified;
-            take(aimOptions(AimedSurface::Mesh), simplified, options);
+            takeAims(AimedSurface::Mesh, simplified, options);
             take(simplifyOptions(), simplified, options);
             return simplifyMesh(mesh, std::move(simplified), threads, std::move(progress));
         },

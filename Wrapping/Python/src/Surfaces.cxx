@@ -270,7 +270,7 @@ void declareSurfaces(py::module_& module) {
             take(indexOptions(), border, options);
             request.border = border.border;
             take(methodOptions(), request.extraction, options);
-            take(aimOptions(AimedSurface::OfScan), request.extraction.adaptive, options);
+            takeAims(AimedSurface::OfScan, request.extraction.adaptive, options);
             take(pieceOptions(), request.selection, options);
             take(preprocessOptions(), request.preprocessing, options);
             return makeSurface(volume, index.get(), request, {file, format, warnings},

@@ -70,7 +70,7 @@ std::string formatLength(double value, int digits);
 /// where it would be: 0.15000763 is "0.15001".
 std::string formatBound(double value, int digits = 4);
 
-/// A size in mm: "138.3 x 175.2 x 149.5 mm", below 1 mm as formatLength() with four digits.
+/// A size in mm: "138.3 x 175.2 x 149.5 mm", with four decimals below 1.
 std::string formatSizeMm(const Vec3& mm);
 
 /// An area or a volume: as formatRounded() from 100 on, below in three significant digits.
