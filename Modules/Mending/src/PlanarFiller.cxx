@@ -67,7 +67,7 @@ void joinSectors(std::vector<PlanarCorner>& corners, const std::vector<VertexId>
                                  return !(a < b) || a.isOut == b.isOut;
                              }) == rays.end();
         if (!isClear) continue;
-        if (!rays.front().isOut) std::ranges::rotate(rays, rays.begin() + 1);
+        if (!rays.front().isOut) std::rotate(rays.begin(), rays.begin() + 1, rays.end());
         for (std::size_t n = 0; n < rays.size(); n += 2) {
             const std::uint32_t own = order[first + n / 2];
             corners[own].next = rays[n].corner;
