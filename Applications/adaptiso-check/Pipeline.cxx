@@ -408,7 +408,8 @@ bool isForMending(const SurfaceRun& surface) {
 std::string holeOption(const SurfaceFacts& facts) {
     constexpr double kLeft = 0.99;  // new surface reaches beyond the border a little
     if (facts.holes.empty()) return {};
-    const double spanMm = std::ranges::max(facts.holes, {}, &Hole::spanMm).spanMm;
+    double spanMm = 0;
+    for (const Hole& hole : facts.holes) spanMm = std::max(spanMm, hole.spanMm);
     const double diagonalMm = norm(facts.size.extentMm);
     if (spanMm < kLeft * MendOptions::kHoleOfDiagonal * diagonalMm) return {};
     const double enoughMm = spanMm / kLeft;
