@@ -307,9 +307,10 @@ private:
         }
     }
 
-    /// One ring that goes to each rim and back by the shortest way left, empty if there is none.
+    /// Joins rims to one ring: at each step the rim nearest to it, by an edge there and back. Empty
+    /// if every such edge is taken.
     ///
-    /// \param taken  gets the ways
+    /// \param taken  gets these edges
     std::vector<VertexId> bridged(const std::vector<std::vector<VertexId>>& rims,
                                   TakenEdges& taken) const {
         std::vector<VertexId> ring = rims.front();
@@ -589,8 +590,8 @@ private:
     std::unordered_map<VertexId, Vec3> normals_;  ///< where a border meets itself
 };
 
-/// What goes beside cap triangles that cross something: those around them in a cap that goes in
-/// parts, the whole of any other, or where half of it would go.
+/// Marks more triangles of caps in which one is dropped. A cap that goes in parts loses the
+/// triangles around it, or all of them if these are more than half. Any other cap loses all.
 void widenWithinCaps(const MendInput& input, std::vector<std::uint8_t>& isDropped) {
     constexpr int kRounds = 2;  // over edges
     const std::int64_t first = input.firstCap();

@@ -12,9 +12,9 @@ std::vector<std::vector<VertexId>> borderRings(const MendInput& input);
 enum class CapKind : std::uint8_t {
     Flat,       ///< in the plane that fits best, of up to 4096 edges; one for borders of one plane
     FlatAlone,  ///< the same, one for each border
-    /// Of the least area that crosses nothing, of up to 256 edges. Where none is found, and for
-    /// longer borders or several of about one plane, of up to 512 edges when their dents are
-    /// filled: triangles that cross something are left out, a quarter at most.
+    /// Of the least area that crosses nothing, for borders of up to 256 edges. Several borders of
+    /// about one plane, longer borders, and those that no such cap closes have their dents filled
+    /// first, up to 512 edges may be left, and a quarter of the triangles may be missing.
     LeastArea
 };
 
@@ -23,9 +23,8 @@ enum class CapKind : std::uint8_t {
 /// \return  whether there are any
 bool addCaps(MendInput& input, CapKind kind);
 
-/// Takes away caps that cross anything, and all their crossings. A plane cap crosses by rounding,
-/// and one of several borders here and there: either goes around these places alone, where that is
-/// less than half of it.
+/// Takes away caps that cross anything, and all their crossings. Of a cap that goes in parts
+/// (MendInput::capGoesInParts) the places that cross go alone, where they are less than half of it.
 /// \post edges are not found
 /// \return  whether there were any
 bool dropCrossingCaps(MendInput& input);

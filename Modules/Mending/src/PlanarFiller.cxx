@@ -77,7 +77,8 @@ void joinSectors(std::vector<PlanarCorner>& corners, const std::vector<VertexId>
     }
 }
 
-/// Of a plane region's corners, loops and parts that hang together by edges, by Euler's formula.
+/// How many triangles fill a plane region, by Euler's formula: from the numbers of its corners,
+/// its loops and its parts, which hang together by edges.
 std::int64_t trianglesDue(const std::vector<PlanarCorner>& corners,
                           const std::vector<LocalTriangle>& triangles) {
     const auto count = std::ssize(corners);

@@ -166,7 +166,7 @@ struct Chart {
     std::string text(double value) const { return formatMeasure(value) + " " + unit; }
 };
 
-/// What the axis shows: a value far from all others is drawn at its end.
+/// Chooses the range of the axis. A value outside of it is drawn at the nearer end.
 void chooseAxis(Chart& chart) {
     std::vector<bool> isApart(chart.values.size());
     for (const Outlier& outlier : chart.outliers) isApart[outlier.index] = true;

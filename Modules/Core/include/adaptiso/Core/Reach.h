@@ -29,7 +29,7 @@ public:
         return spanMm;
     }
 
-    /// Of their box. \pre there is a point
+    /// The middle of the box around all points. \pre there is a point
     Vec3 middleMm() const {
         return {0.5 * (low_[0] + high_[0]), 0.5 * (low_[1] + high_[1]), 0.5 * (low_[2] + high_[2])};
     }
