@@ -14,6 +14,7 @@
 #include "Pipeline.h"
 #include "Run.h"
 #include "adaptiso/Core/FoundFiles.h"
+#include "adaptiso/Core/Phrases.h"
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
@@ -286,12 +287,14 @@ void declareElectrodes(CLI::App& app, BemOptions& options) {
          {"tkras", CoordinateFrame::TkRas}},
         "Their frame (default: what the file says; else by its nasion and ears; without these the "
         "file is refused)");
-    group.choice<PositionSystem>("--montage", options.model.electrodes.positions,
-                                 {{"10-20", PositionSystem::TenTwenty},
-                                  {"10-10", PositionSystem::TenTen},
-                                  {"10-05", PositionSystem::TenFive}},
-                                 "Electrode positions of the 10-20, 10-10 or 10-05 system, "
-                                 "computed on the skin from nasion and ears");
+    const auto takeMontage = [&target = options.model.electrodes.montage](const std::string& name) {
+        const std::vector<std::string> names = montageNames();
+        target = names[parseChoice("--montage", name, names)];
+    };
+    group.value(
+        "--montage", "NAME", takeMontage,
+        "Electrode positions computed on the skin from nasion and ears: of the systems or caps " +
+            joined(montageNames()));
     addPoint(app, "--nasion", options.nasion,
              "Nasion, scanner RAS mm (default: the electrodes' file's, else guessed)");
     addPoint(app, "--left-ear", options.leftEar, "Left preauricular point, the same");

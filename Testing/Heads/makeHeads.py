@@ -232,6 +232,26 @@ def seven_tesla(head):
     return rician(t1 * field * head.brain, 0.04, head.brain, 7)
 
 
+def wide_ventricles(head, magnified):
+    """Hydrocephalus: the middle of the brain magnified, its surface in place."""
+    middle, radii = CENTRE + (0, 2, 8), np.array((58, 74, 50))
+    offsets = [(x - c) / r for x, c, r in zip(head.xyz, middle, radii)]
+    share = np.sqrt(sum(o * o for o in offsets))
+    drawn = np.where(share < 1, (1 + (magnified - 1) * share ** 2) / magnified, 1)
+    source = [c + r * o * drawn - head.affine[a, 3] for a, (o, c, r) in enumerate(zip(offsets, middle, radii))]
+    return ndimage.map_coordinates(head.t1, source, order=1)
+
+
+def cut_sides(head, mm, slice_mm):
+    """Sagittal slices of `slice_mm` that end `mm` inside the skin on both sides."""
+    inside_skin = np.flatnonzero((head.skin > 0).any((1, 2)))
+    x = np.arange(inside_skin[0] + mm, inside_skin[-1] - mm, slice_mm)
+    grid = np.meshgrid(x, *[np.arange(s) for s in head.t1.shape[1:]], indexing="ij")
+    affine = head.affine @ np.diag((slice_mm, 1, 1, 1))
+    affine[:3, 3] += x[0] * head.affine[:3, 0]
+    return ndimage.map_coordinates(head.t1, grid, order=1), ndimage.map_coordinates(head.mask, grid, order=0), affine
+
+
 def thin(head, factor):
     """Skull, scalp and face of an infant: what lies outside the inner skull comes nearer to it by a factor."""
     nearest = ndimage.distance_transform_edt(head.inner <= 0, return_distances=False, return_indices=True)
@@ -309,10 +329,17 @@ def cases(head, packages=None):
     # the face's own skin can't be right
     yield case("defaced-8", "face taken out to 8 mm from the inner skull", lambda: defaced(head, 8), compared=1)
     yield case("bias-40", "bias field of 40 % upwards, 20 % to the front", lambda: head.t1 * coil(head, (0, 0.2, 0.4)))
+    for lost in (0.3, 0.5):
+        yield case(f"bias-down-{100 * lost:.0f}", f"the signal falls from top to bottom, by {100 * lost:.0f} % in all",
+                   lambda b=lost: head.t1 * coil(head, (0, 0, b / (2 - b))))
     yield case("bias-bowl", "a bowl of 30 %", lambda: head.t1 * coil(head, bowl=0.3))
     yield case("noise-9", "noise of 9 %", lambda: rician(head.t1, 0.09, head.brain))
     yield case("thick-slices", "slices of 3 mm",
                lambda: (head.t1[:, :, ::3], head.mask[:, :, ::3], head.affine @ np.diag((1, 1, 3, 1))))
+    for mm in (4, 10):
+        yield case(f"cut-sides-{mm}", f"slices of 1.5 mm, the outer {mm} mm of both sides not in the image", lambda m=mm: cut_sides(head, m, 1.5))
+    for magnified in (2, 3):
+        yield case(f"ventricles-{magnified}", f"hydrocephalus: ventricles {magnified} times as wide", lambda m=magnified: wide_ventricles(head, m))
     lifted = np.eye(4)
     lifted[2, 3] = 46
     yield case("cut-above-eyes", "the image ends at z = -25 mm",

@@ -146,6 +146,10 @@ Vec3 Arc::at(double share) const {
     return corners_.back();
 }
 
+double Arc::shareNear(const Vec3& point) const {
+    return lengths_[nearestCorner(corners_, point).first] / lengthMm();
+}
+
 std::optional<Arc> arcThrough(const TriangleMesh& mesh, const Vec3& from, const Vec3& by,
                               const Vec3& to) {
     const Vec3 normal = cross(by - from, to - from);

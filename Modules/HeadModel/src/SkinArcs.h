@@ -20,6 +20,8 @@ public:
     explicit Arc(std::vector<Vec3> corners);
     /// The point at a share of its length, 0 to 1.
     Vec3 at(double share) const;
+    /// The share at which the corner nearest to a point lies.
+    double shareNear(const Vec3& point) const;
     double lengthMm() const { return lengths_.back(); }
 
 private:

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "FinishBoundaries.h"
+#include "MontageTable.h"
 #include "SkinArcs.h"
 #include "adaptiso/Core/Errors.h"
 #include "adaptiso/Core/Text.h"
@@ -34,6 +36,18 @@ struct Frame {
     Arc midline(const TriangleMesh& skin) const { return requireArc(skin, nasion, vertex, inion); }
     Arc across(const TriangleMesh& skin) const {
         return requireArc(skin, leftEar, vertex, rightEar);
+    }
+    /// From Fpz past T7, and past T8, to Oz.
+    std::pair<Arc, Arc> ring(const TriangleMesh& skin) const {
+        const Arc along = midline(skin), over = across(skin);
+        const Vec3 front = along.at(0.1), back = along.at(0.9);
+        return {requireArc(skin, front, over.at(0.1), back),
+                requireArc(skin, front, over.at(0.9), back)};
+    }
+    /// From the nasion past the left ear, and past the right one, to the inion.
+    std::pair<Arc, Arc> lowerRing(const TriangleMesh& skin) const {
+        return {requireArc(skin, nasion, leftEar, inion),
+                requireArc(skin, nasion, rightEar, inion)};
     }
 };
 
@@ -112,6 +126,8 @@ constexpr std::array<Row, 15> kRows{{{15, "AFp", "AFp"},
                                      {80, "PO", "PO"},
                                      {85, "POO", "POO"}}};
 
+enum class PositionSystem { TenTwenty, TenTen, TenFive };
+
 const std::set<std::string>& tenTwenty() {
     static const std::set<std::string> names{"Fp1", "Fpz", "Fp2", "F7", "F3", "Fz", "F4",
                                              "F8",  "T7",  "C3",  "Cz", "C4", "T8", "P7",
@@ -136,8 +152,7 @@ public:
     std::vector<NamedPoint> all() && {
         const Arc midline = frame_.midline(skin_), across = frame_.across(skin_);
         const Vec3 front = midline.at(0.1), back = midline.at(0.9);
-        const Arc left = requireArc(skin_, front, across.at(0.1), back);
-        const Arc right = requireArc(skin_, front, across.at(0.9), back);
+        const auto [left, right] = frame_.ring(skin_);
         add("Fpz", front);
         addRing("Fp", 0.1, left, right);
         for (const Row& row : kRows) {
@@ -184,8 +199,7 @@ private:
 
     /// Through nasion, ears and inion.
     void addLowerRing() {
-        const Arc left = requireArc(skin_, frame_.nasion, frame_.leftEar, frame_.inion);
-        const Arc right = requireArc(skin_, frame_.nasion, frame_.rightEar, frame_.inion);
+        const auto [left, right] = frame_.lowerRing(skin_);
         constexpr std::array<std::pair<int, const char*>, 5> kNames{
             {{30, "F"}, {40, "FT"}, {50, "T"}, {60, "TP"}, {70, "P"}}};
         for (const auto& [percent, name] : kNames) {
@@ -203,11 +217,74 @@ private:
     std::vector<NamedPoint> positions_;
 };
 
+/// Places by angles on a sphere whose rings are those of the 10-05 system.
+class ByAngles {
+public:
+    ByAngles(const TriangleMesh& skin, const Landmarks& landmarks)
+        : skin_(skin),
+          frame_(frameOf(skin, landmarks)),
+          ring_(frame_.ring(skin)),
+          lower_(frame_.lowerRing(skin)) {}
+
+    Vec3 at(const CapPlace& place) const {
+        constexpr double kRingDeg = 92, kLowerDeg = 115;
+        const Vec3 onRing = on(ring_, place.azimuthDeg);
+        if (place.polarDeg > kRingDeg) {
+            const double beyond = (place.polarDeg - kRingDeg) / (kLowerDeg - kRingDeg);
+            return onRing + beyond * (on(lower_, place.azimuthDeg) - onRing);
+        }
+        const Arc arc = requireArc(skin_, on(ring_, place.azimuthDeg + 180), frame_.vertex, onRing);
+        const double top = arc.shareNear(frame_.vertex);
+        return arc.at(top + (1 - top) * place.polarDeg / kRingDeg);
+    }
+
+private:
+    /// \param azimuthDeg  from the right ear to the nasion
+    static Vec3 on(const std::pair<Arc, Arc>& leftAndRight, double azimuthDeg) {
+        const double fromNasion = std::remainder(azimuthDeg - 90, 360);
+        return (fromNasion > 0 ? leftAndRight.first : leftAndRight.second)
+            .at(std::abs(fromNasion) / 180);
+    }
+
+    const TriangleMesh& skin_;
+    Frame frame_;
+    std::pair<Arc, Arc> ring_, lower_;
+};
+
+std::vector<NamedPoint> capPositions(const TriangleMesh& skin, const Landmarks& landmarks,
+                                     std::string_view montage) {
+    std::map<std::string, Vec3> standard;
+    for (NamedPoint& p : Positions(skin, landmarks, PositionSystem::TenFive).all()) {
+        standard[std::move(p.name)] = p.point;
+    }
+    const ByAngles byAngles(skin, landmarks);
+    std::vector<NamedPoint> positions;
+    std::vector<Vec3> places;
+    for (const CapPlace& place : capPlaces(montage)) {
+        positions.push_back({place.name, PointKind::Electrode, {}});
+        places.push_back(place.standardName.empty() ? byAngles.at(place)
+                                                    : standard.at(place.standardName));
+    }
+    const OntoSkin onto = projectedOntoSkin(places, skin);
+    for (std::size_t n = 0; n < positions.size(); ++n) positions[n].point = onto.pointsMm[n];
+    return positions;
+}
+
 }  // namespace
 
 std::vector<NamedPoint> standardPositions(const TriangleMesh& skin, const Landmarks& landmarks,
-                                          PositionSystem system) {
-    return Positions(skin, landmarks, system).all();
+                                          std::string_view montage) {
+    static const std::map<std::string_view, PositionSystem> systems{
+        {"10-20", PositionSystem::TenTwenty},
+        {"10-10", PositionSystem::TenTen},
+        {"10-05", PositionSystem::TenFive}};
+    const auto system = systems.find(montage);
+    if (system != systems.end()) return Positions(skin, landmarks, system->second).all();
+    const std::vector<std::string> names = montageNames();
+    if (std::ranges::find(names, montage) == names.end()) {
+        throw InvalidInput("no montage has the name " + std::string(montage));
+    }
+    return capPositions(skin, landmarks, montage);
 }
 
 Landmarks withInion(const TriangleMesh& skin, Landmarks landmarks) {

@@ -297,7 +297,7 @@ void place(BemModel& model, BemElectrodes& placed) {
         placed.landmarkOrigin = "given";
     }
     if (model.givenElectrodes.file) project(inModelSpace(model, placed), model, placed);
-    const bool needsLandmarks = options.positions || options.wantsLandmarks;
+    const bool needsLandmarks = !options.montage.empty() || options.wantsLandmarks;
     if (!placed.landmarks && needsLandmarks) guess(model, placed);
     if (placed.landmarks) {
         const std::size_t innerSkull = model.options.boundaries.innerSurfaces;
@@ -307,15 +307,15 @@ void place(BemModel& model, BemElectrodes& placed) {
             model.warnings.push_back(*std::move(warning));
         }
     }
-    if (!options.positions) return;
+    if (options.montage.empty()) return;
     if (!placed.landmarks) throw InvalidInput("positions need nasion and ears; give them");
     const TriangleMesh& skin = model.meshes.back();
-    placed.points = standardPositions(skin, *placed.landmarks, *options.positions);
+    placed.points = standardPositions(skin, *placed.landmarks, options.montage);
     placed.areComputed = true;
     carryUncertainty(
         withInion(skin, *placed.landmarks),
         [&](const Landmarks& landmarks) {
-            return placesOf(standardPositions(skin, landmarks, *options.positions));
+            return placesOf(standardPositions(skin, landmarks, options.montage));
         },
         placed.points, model, placed);
     model.notes.push_back("electrodes: " + formatCount(std::ssize(placed.points)) +
@@ -344,7 +344,7 @@ void checkElectrodes(const BemModel& model) {
         throw InvalidInput(
             "the file says no coordinate frame, and has no nasion and ears to find it by; state it "
             "by --electrodes-in ras, lps or tkras (electrodes_in in Python), or of a template "
-            "whose names are of the 10-05 system take --montage (montage)");
+            "take --montage (montage)");
     }
     const bool hasHeadPoints = !hasFrame && count(PointKind::Other) >= kLeastHeadPoints;
     if (count(PointKind::Electrode) == 0 && (!hasHeadPoints || !model.options.leadField.empty())) {

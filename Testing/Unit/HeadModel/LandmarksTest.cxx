@@ -27,9 +27,9 @@ Landmarks onEquator() {
     return landmarks;
 }
 
-std::map<std::string, Vec3> positionsOn(const TriangleMesh& skin, PositionSystem system) {
+std::map<std::string, Vec3> positionsOn(const TriangleMesh& skin, std::string_view montage) {
     std::map<std::string, Vec3> positions;
-    for (const NamedPoint& point : standardPositions(skin, onEquator(), system)) {
+    for (const NamedPoint& point : standardPositions(skin, onEquator(), montage)) {
         positions[point.name] = point.point - kCentre;
     }
     return positions;
@@ -44,7 +44,7 @@ Vec3 direction(double fromTop, double azimuth) {
 
 TEST(StandardPositions, OfASphereAreWhereAnglesSay) {
     const TriangleMesh skin = icosphere(5, kCentre, kRadiusMm);
-    const auto positions = positionsOn(skin, PositionSystem::TenTen);
+    const auto positions = positionsOn(skin, "10-10");
     // arcs of 180 degrees: ten percent are 18 degrees; the ring through Fpz, T7, Oz lies 72 degrees
     // from the vertex, on which ten percent of a half are 18 degrees of azimuth
     const std::map<std::string, Vec3> expected{
@@ -67,7 +67,7 @@ TEST(StandardPositions, TakeTheInionThatIsGiven) {
     Landmarks landmarks = onEquator();
     landmarks.inionMm = kCentre + kRadiusMm * direction(70, 180);
     for (const NamedPoint& point :
-         standardPositions(icosphere(5, kCentre, kRadiusMm), landmarks, PositionSystem::TenTen)) {
+         standardPositions(icosphere(5, kCentre, kRadiusMm), landmarks, "10-10")) {
         const Vec3 at = point.point - kCentre;
         if (point.name == "Iz") {
             EXPECT_LE(norm(at - kRadiusMm * direction(70, 180)), 0.2);
@@ -86,7 +86,7 @@ TEST(StandardPositions, GuessTheInionAboveTheLineFromTheNasionBetweenTheEars) {
     const Landmarks guessed = withInion(skin, landmarks);
     EXPECT_LE(norm(*guessed.inionMm - kCentre - kRadiusMm * direction(77, 180)), 0.2);
     EXPECT_EQ(guessed.inionUncertaintyMm, 20);
-    for (const NamedPoint& point : standardPositions(skin, landmarks, PositionSystem::TenTen)) {
+    for (const NamedPoint& point : standardPositions(skin, landmarks, "10-10")) {
         if (point.name != "Iz") continue;
         EXPECT_LE(norm(point.point - *guessed.inionMm), 0.2);
     }
@@ -97,7 +97,7 @@ TEST(StandardPositions, AreAsUncertainAsTheirLandmarks) {
     const TriangleMesh skin = icosphere(5, kCentre, kRadiusMm);
     const auto places = [&](const Landmarks& l) {
         std::vector<Vec3> fpzCzOz;
-        for (const NamedPoint& p : standardPositions(skin, l, PositionSystem::TenTwenty)) {
+        for (const NamedPoint& p : standardPositions(skin, l, "10-20")) {
             if (p.name == "Cz" || p.name == "Fpz" || p.name == "Oz") fpzCzOz.push_back(p.point);
         }
         return fpzCzOz;
@@ -134,17 +134,26 @@ TEST(SideOfName, FollowsTheNumber) {
 
 TEST(StandardPositions, AreAsManyAsTheSystemsHaveAndNamedOnce) {
     const TriangleMesh skin = icosphere(4, kCentre, kRadiusMm);
-    const std::map<PositionSystem, std::size_t> counts{{PositionSystem::TenTwenty, 21},
-                                                       {PositionSystem::TenTen, 73},
-                                                       {PositionSystem::TenFive, 277}};
-    for (const auto& [system, count] : counts) {
-        EXPECT_EQ(standardPositions(skin, onEquator(), system).size(), count);
-        EXPECT_EQ(positionsOn(skin, system).size(), count);
+    const std::map<std::string, std::size_t> counts{{"10-20", 21},
+                                                    {"10-10", 73},
+                                                    {"10-05", 277},
+                                                    {"biosemi16", 16},
+                                                    {"biosemi64", 64},
+                                                    {"biosemi256", 256},
+                                                    {"standard_1005", 343},
+                                                    {"easycap-M10", 61},
+                                                    {"GSN-HydroCel-64_1.0", 64},
+                                                    {"GSN-HydroCel-129", 129},
+                                                    {"EGI_256", 256},
+                                                    {"mgh60", 60}};
+    for (const auto& [montage, count] : counts) {
+        EXPECT_EQ(standardPositions(skin, onEquator(), montage).size(), count);
+        EXPECT_EQ(positionsOn(skin, montage).size(), count);
     }
 }
 
 TEST(StandardPositions, AreMirroredWhereTheHeadIs) {
-    const auto positions = positionsOn(icosphere(5, kCentre, kRadiusMm), PositionSystem::TenFive);
+    const auto positions = positionsOn(icosphere(5, kCentre, kRadiusMm), "10-05");
     for (const auto& [left, right] : {std::pair{"F5h", "F6h"}, std::pair{"CCP3", "CCP4"},
                                       std::pair{"FTT7h", "FTT8h"}, std::pair{"O1h", "O2h"}}) {
         const Vec3 a = positions.at(left), b = positions.at(right);
@@ -152,9 +161,45 @@ TEST(StandardPositions, AreMirroredWhereTheHeadIs) {
     }
 }
 
+TEST(StandardPositions, OfCapsFollowNamesAndAngles) {
+    const TriangleMesh skin = icosphere(5, kCentre, kRadiusMm);
+    const auto tenFive = positionsOn(skin, "10-05"), sixtyFour = positionsOn(skin, "biosemi64");
+    for (const auto& [name, at] : sixtyFour) EXPECT_LE(norm(at - tenFive.at(name)), 1e-6) << name;
+    EXPECT_LE(norm(positionsOn(skin, "standard_1020").at("T3") - tenFive.at("T7")), 1e-6);
+    EXPECT_LE(norm(positionsOn(skin, "mgh60").at("EEG001") - tenFive.at("Fp1")), 1e-6);
+    // 92 degrees of a cap are 72 of this sphere, 115 are 90; azimuths from the nasion to the left
+    const auto cap = positionsOn(skin, "biosemi128");
+    const std::map<std::string, Vec3> expected{{"A1", direction(0, 0)},
+                                               {"A2", direction(9, 180)},
+                                               {"B20", direction(18, -90)},
+                                               {"C16", direction(72, -18)},
+                                               {"D32", direction(81, 126)}};
+    for (const auto& [name, at] : expected) {
+        EXPECT_LE(norm(cap.at(name) - kRadiusMm * at), 1) << name;
+    }
+}
+
+TEST(StandardPositions, OfEveryMontageLieOnTheSkinInPairs) {
+    const TriangleMesh skin = icosphere(5, kCentre, kRadiusMm);
+    for (const std::string& montage : montageNames()) {
+        const auto positions = positionsOn(skin, montage);
+        EXPECT_GE(positions.size(), 16u) << montage;
+        for (const auto& [name, at] : positions) {
+            EXPECT_NEAR(norm(at), kRadiusMm, 0.2) << montage << " " << name;
+            // 65 of EGI's nets are not even themselves
+            double mirrored = kRadiusMm;
+            for (const auto& [other, there] : positions) {
+                mirrored = std::min(mirrored, norm(there - Vec3{-at.x, at.y, at.z}));
+            }
+            EXPECT_LE(mirrored, 8) << montage << " " << name;
+        }
+    }
+    EXPECT_THROW(standardPositions(skin, onEquator(), "biosemi65"), InvalidInput);
+}
+
 TEST(StandardPositions, RefuseLandmarksOfAnotherHead) {
     const TriangleMesh skin = icosphere(3, kCentre + Vec3{0, 0, 120}, kRadiusMm);
-    EXPECT_THROW(standardPositions(skin, onEquator(), PositionSystem::TenTwenty), InvalidInput);
+    EXPECT_THROW(standardPositions(skin, onEquator(), "10-20"), InvalidInput);
 }
 
 TEST(Landmarks, TakeOneHeadToAnother) {

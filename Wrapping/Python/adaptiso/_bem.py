@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 PRESETS = tuple(_adaptiso.tissue_presets())
 TISSUES = ("white", "brain", "csf", "skull", "scalp")
-MONTAGES = ("10-20", "10-10", "10-05")
+MONTAGES = tuple(_adaptiso.montage_names())
 MESHERS = ("tetgen", "gmsh")
 #: From inside out; models have the inner skull alone, or the last three to five of them.
 SURFACES = ("white_matter", "brain", "inner_skull", "outer_skull", "outer_skin")
@@ -372,8 +372,9 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
     electrodes_in : {"ras", "lps", "tkras"}, optional
         The frame of the file. Default: what it says; else by its nasion and ears; else
         it is refused.
-    montage : {"10-20", "10-10", "10-05"}, optional
-        Instead of `electrodes`: the positions of this system, computed on the skin.
+    montage : str, optional
+        Instead of `electrodes`: the positions of this system or cap, computed on the skin: "10-20", "10-10", "10-05",
+        "biosemi64", "GSN-HydroCel-128", ... as MNE-Python names them.
     landmarks : mapping of "nasion", "left_ear", "right_ear" to (float, float, float), or "guess"
         Scanner RAS mm; "inion" may be among them. Default: those of the electrodes' file; guessed,
         with a warning, where they are needed or this is "guess".

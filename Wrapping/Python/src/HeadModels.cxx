@@ -446,12 +446,7 @@ GivenElectrodes electrodesOf(const py::dict& options) {
 ElectrodeOptions electrodeOptionsOf(const py::dict& options) {
     ElectrodeOptions wanted;
     wanted.frame = frameOf(take<std::optional<std::string>>(options, "electrodes_in"));
-    if (const auto system = take<std::optional<std::string>>(options, "montage")) {
-        wanted.positions = choose<PositionSystem>("montage", *system,
-                                                  {{"10-20", PositionSystem::TenTwenty},
-                                                   {"10-10", PositionSystem::TenTen},
-                                                   {"10-05", PositionSystem::TenFive}});
-    }
+    wanted.montage = take<std::optional<std::string>>(options, "montage").value_or("");
     wanted.wantsLandmarks = take<bool>(options, "guesses_landmarks");
     return wanted;
 }
@@ -556,6 +551,7 @@ py::list placesOf(const HeadModelData& data, bool areElectrodes) {
 
 void declareHeadModels(py::module_& module) {
     module.def("tissue_presets", &tissuePresetNames);
+    module.def("montage_names", &montageNames);
     py::class_<HeadModelData, std::shared_ptr<HeadModelData>>(module, "HeadModelData")
         .def_property_readonly("surfaces", &HeadModelData::surfaces)
         .def_property_readonly("has_model",

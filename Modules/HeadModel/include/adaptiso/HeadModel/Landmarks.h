@@ -50,16 +50,21 @@ AffineTransform toNeuromag(const Landmarks& landmarks);
 /// y to the left in the plane of the three, z up. \throws InvalidInput  as above
 AffineTransform toBrainstorm(const Landmarks& landmarks);
 
-/// Which positions: 21, 73 or 277.
-enum class PositionSystem { TenTwenty, TenTen, TenFive };
+/// "10-20", "10-10", "10-05" (21, 73 and 277 positions), and caps by their names in MNE-Python:
+/// "biosemi64", "GSN-HydroCel-128", ...
+std::vector<std::string> montageNames();
 
 /// The positions of the 10-20 system and its extensions [Jurcak2007, Oostenveld2001] on a skin:
 /// shares of arcs in planes through landmarks. Cz halves both the arc from nasion to inion and that
-/// from ear to ear. An inion that is not given is guessed by withInion(). \param skin  closed, LPS
-/// mm \throws InvalidInput  landmarks farther than 30 mm from the skin, or a plane that does not
-/// cut it
+/// from ear to ear. An inion that is not given is guessed by withInion().
+///
+/// An electrode of a cap is where the 10-05 system has its name; one that has none there is at a
+/// share of the arc from Cz to the ring through Fpz, T7 and Oz, or of the way from there to the
+/// arcs through nasion, ears and inion and as far beyond, by its angles on a sphere. \param skin
+/// closed, LPS mm \param montage  one of montageNames() \throws InvalidInput  landmarks farther
+/// than 30 mm from the skin, a plane that does not cut it, or a montage of another name
 std::vector<NamedPoint> standardPositions(const TriangleMesh& skin, const Landmarks& landmarks,
-                                          PositionSystem system);
+                                          std::string_view montage);
 
 /// The landmarks with an inion. One that is not given is guessed, to 20 mm: in the middle plane,
 /// seen from between the ears 13 degrees above the line from the nasion through there. \throws

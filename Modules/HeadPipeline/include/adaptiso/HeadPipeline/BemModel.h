@@ -34,8 +34,8 @@ namespace adaptiso {
 /// Electrodes to put on the skin of a model.
 struct ElectrodeOptions {
     std::optional<CoordinateFrame> frame;  ///< of the file; else what it says, or by its landmarks
-    std::optional<PositionSystem> positions;  ///< computed from landmarks, instead of a file's
-    bool wantsLandmarks = false;              ///< even without electrodes
+    std::string montage{};        ///< computed from landmarks, instead of a file's; empty: none
+    bool wantsLandmarks = false;  ///< even without electrodes
 };
 
 /// Electrodes and landmarks that were given.
@@ -218,7 +218,7 @@ struct BemModel {
     }
     bool wantsElectrodes() const {
         const ElectrodeOptions& wanted = options.electrodes;
-        return givenElectrodes.file || givenElectrodes.landmarks || wanted.positions ||
+        return givenElectrodes.file || givenElectrodes.landmarks || !wanted.montage.empty() ||
                wanted.wantsLandmarks;
     }
 
