@@ -270,7 +270,7 @@ std::string checkCommand(const AtomicFolder& folder) {
     std::string surfaces;
     std::size_t count = 0;
     for (const auto& [name, bytes] : folder.files()) {
-        if (!name.ends_with(".surf")) continue;
+        if (!name.ends_with(".surf") || name == kSpongyBoneSurf) continue;
         surfaces += " " + shellQuoted((folder.target() / name).string());
         ++count;
     }

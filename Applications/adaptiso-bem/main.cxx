@@ -65,19 +65,20 @@ void takeNumbers(const std::string& option, const std::string& text, char separa
 /// "brain=1,2,3"
 void addTissue(TissueLabels& tissues, const std::string& text) {
     const auto refuse = [&] {
-        throw UsageError(
-            "--tissue " + text +
-            ": must be white, brain, csf, skull or scalp, '=', and labels or ranges of them with "
-            "commas between: brain=1,2,5-9");
+        throw UsageError("--tissue " + text +
+                         ": must be white, brain, csf, skull, spongy or scalp, '=', and labels or "
+                         "ranges of them with "
+                         "commas between: brain=1,2,5-9");
     };
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
-    std::vector<std::int64_t>* const list = name == "white"   ? &tissues.white
-                                            : name == "brain" ? &tissues.brain
-                                            : name == "csf"   ? &tissues.csf
-                                            : name == "skull" ? &tissues.skull
-                                            : name == "scalp" ? &tissues.scalp
-                                                              : nullptr;
+    std::vector<std::int64_t>* const list = name == "white"    ? &tissues.white
+                                            : name == "brain"  ? &tissues.brain
+                                            : name == "csf"    ? &tissues.csf
+                                            : name == "skull"  ? &tissues.skull
+                                            : name == "scalp"  ? &tissues.scalp
+                                            : name == "spongy" ? &tissues.spongy
+                                                               : nullptr;
     if (equals == std::string::npos || list == nullptr) return refuse();
     for (const std::string& part : parts(text.substr(equals + 1), ',')) {
         constexpr std::uint64_t kMostLabels = 100'000;  // more than any atlas has
@@ -140,7 +141,8 @@ void declareInput(CLI::App& app, BemOptions& options) {
             for (const std::string& text : texts) addTissue(options.tissues, text);
         },
         "Labels of a tissue: brain=1,2,5-9 (CSF and white matter included, or named apart: white=1 "
-        "brain=2 csf=3), skull=4, scalp=5; one --tissue each");
+        "brain=2 csf=3), skull=4, scalp=5; spongy=8 for a surface of its spongy bone; one --tissue "
+        "each");
     input.value(
         "--preset", choiceName(kPresets),
         [&options](const std::string& text) {

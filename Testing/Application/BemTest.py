@@ -106,6 +106,35 @@ class Model(BemTest):
         for name in ("wm.stl", "headmodel.mat", "bem.fif", "white_matter.surf"):
             self.assertTrue((self.path("model") / name).exists(), name)
 
+    def test_spongy_bone_is_a_surface_within_the_skull(self):
+        """A shell of 6 mm in a skull of 12 mm; then a skull that is spongy throughout."""
+        for radii, volume in (((52, 55, 61, 64, 72), 61**3 - 55**3), ((52, 52, 64, 64, 72), 61**3 - 55**3)):  # voxels of 3 mm
+            image = head(radii=radii, values=(1, 2, 8, 2, 3))
+            if radii[0] == radii[1]:
+                image = head(radii=(52, 64, 72), values=(1, 8, 3))
+            write_nifti(self.path("seg.nii"), image)
+            tissues = [word for pair in ("brain=1", "skull=2,8", "scalp=3") for word in ("--tissue", pair)]
+            self.bem("--labels", "seg.nii", *tissues, *QUICK, "--bem-fmm", "-o", "plain", "--force")
+            self.bem("--labels", "seg.nii", *tissues, "--tissue", "spongy=8", *QUICK, "--bem-fmm", "--vtp", "-o", "model", "--force")
+            bone = self.report()["spongyBone"]
+            self.assertIsNone(self.report("plain")["spongyBone"])
+            self.assertGreaterEqual(min(bone["innerSkullGapMm"], bone["outerSkullGapMm"]), 0.5)
+            self.assertAlmostEqual(bone["volumeMm3"] / (4 / 3 * math.pi * volume), 1, delta=0.12)
+            index = (self.path("model") / "tissue_index.txt").read_text().splitlines()
+            self.assertEqual(index[-1], ">Spongy : spongy.stl : 0.025 : Skull")
+            for name in ("spongy.stl", "spongy_bone.surf", "spongy_bone.vtp"):
+                if Path(CHECK).exists():
+                    done = subprocess.run([CHECK, str(self.path("model") / name), "--profile", "print"], capture_output=True, text=True)
+                    self.assertEqual(done.returncode, OK, done.stdout)
+            for name in ("inner_skull.tri", "outer_skull.surf", "skin.stl", "model.geom"):
+                self.assertEqual((self.path("model") / name).read_bytes(), (self.path("plain") / name).read_bytes(), name)
+
+    def test_spongy_bone_is_refused_where_it_makes_no_sense(self):
+        labels = self.labels()
+        self.fails(USAGE, r"--tissue spongy=... needs a skull: not with --meg", *labels, "--tissue", "spongy=8", "--meg", "-o", "m")
+        self.fails(BAD_INPUT, r"holds no label of the tissue spongy bone", *labels, "--tissue", "spongy=8", "-o", "m")
+        self.fails(BAD_INPUT, r"label 1 is named twice", *labels, "--tissue", "spongy=1", "-o", "m")
+
     def test_five_layers_are_refused_where_they_make_no_sense(self):
         labels = self.labels()
         self.fails(USAGE, r"--layers 5 needs --tissue white", *labels, "--tissue", "csf=4", "--layers", "5", "-o", "m")

@@ -329,7 +329,7 @@ def cases(head, packages=None):
     # the face's own skin can't be right
     yield case("defaced-8", "face taken out to 8 mm from the inner skull", lambda: defaced(head, 8), compared=1)
     yield case("bias-40", "bias field of 40 % upwards, 20 % to the front", lambda: head.t1 * coil(head, (0, 0.2, 0.4)))
-    for lost in (0.3, 0.5):
+    for lost in (0.3, 0.5, 0.8):
         yield case(f"bias-down-{100 * lost:.0f}", f"the signal falls from top to bottom, by {100 * lost:.0f} % in all",
                    lambda b=lost: head.t1 * coil(head, (0, 0, b / (2 - b))))
     yield case("bias-bowl", "a bowl of 30 %", lambda: head.t1 * coil(head, bowl=0.3))

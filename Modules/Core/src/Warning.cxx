@@ -79,6 +79,7 @@ constexpr WarningCode kCodes[] = {
     {"several-solids", "a file holds several solids or meshes, read as one surface", true},
     {"sides-doubtful", "names of electrodes, or nasion and ears, contradict the sides of the head"},
     {"size-doubtful", "a surface is smaller than 1 mm; its unit may not be mm", true},
+    {"spongy-bone-missing", "the labels' spongy bone lies outside of the head model's skull"},
     {"skull-closed", "a hole in the segmentation's skull is closed in the head model"},
     {"skull-thickened", "much of the head model's skull is thicker than the segmentation's"},
     {"skull-unseen", "the skull shows on too few of the rays to the scalp"},

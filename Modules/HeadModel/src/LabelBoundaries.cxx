@@ -146,6 +146,12 @@ void requireDistinct(const TissueLabels& tissues) {
             }
         }
     }
+    for (const std::int64_t label : tissues.spongy) {
+        const bool isSkull = std::ranges::find(tissues.skull, label) != tissues.skull.end();
+        if (!isSkull && !seen.insert(label).second) {
+            throw InvalidInput("label " + std::to_string(label) + " is named twice");
+        }
+    }
 }
 
 void requireSome(const FloatImage& more, const FloatImage* less, const char* tissue) {
@@ -220,13 +226,13 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
         if (holds(tissues.brain, sample) || holds(tissues.white, sample)) return true;
         return tissues.othersAreBrain && sample != 0 && !std::isnan(sample) &&
                !holds(tissues.csf, sample) && !holds(tissues.skull, sample) &&
-               !holds(tissues.scalp, sample);
+               !holds(tissues.spongy, sample) && !holds(tissues.scalp, sample);
     };
     const auto isInCavity = [&](double sample) {
         return isBrain(sample) || holds(tissues.csf, sample);
     };
     const auto isInSkull = [&](double sample) {
-        return isInCavity(sample) || holds(tissues.skull, sample);
+        return isInCavity(sample) || holds(tissues.skull, sample) || holds(tissues.spongy, sample);
     };
     std::vector<FloatImage> inner, enclosed{indicator(labels, isInCavity)};
     requireSome(enclosed[0], nullptr, "brain");
@@ -250,7 +256,14 @@ HeadBoundaries boundariesFromLabels(const VolumeView& labels, const TissueLabels
         if (headMask) unite(enclosed[2], *headMask);
         requireSome(enclosed[2], &enclosed[1], "scalp");
     }
-    return boundariesFrom(std::move(enclosed), std::move(inner), options);
+    HeadBoundaries boundaries = boundariesFrom(std::move(enclosed), std::move(inner), options);
+    if (boundaries.segmented && !tissues.spongy.empty()) {
+        const FloatImage spongy =
+            indicator(labels, [&](double sample) { return holds(tissues.spongy, sample); });
+        requireSome(spongy, nullptr, "spongy bone");
+        boundaries.segmented->isSpongy.assign(spongy.values.begin(), spongy.values.end());
+    }
+    return boundaries;
 }
 
 HeadBoundaries boundariesFromProbabilities(std::span<const VolumeView> maps,

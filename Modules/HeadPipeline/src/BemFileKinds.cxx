@@ -14,6 +14,7 @@
 #include "adaptiso/MeshIO/CoordinateFrame.h"
 #include "adaptiso/MeshIO/FiffSurfaces.h"
 #include "adaptiso/MeshIO/MeshFile.h"
+#include "adaptiso/SurfaceChecks/Checks.h"
 
 namespace adaptiso {
 namespace {
@@ -297,6 +298,34 @@ Files filesOf(const char* extension) {
     return names;
 }
 
+bool hasSpongyBone(const Source& source) {
+    return source.model.spongyBone.has_value();
+}
+
+/// Spongy bone, which may be in pieces.
+BemFileKind spongyFile(const Source& source, const Files& files, CoordinateFrame frame) {
+    const TriangleMesh& mesh = source.model.spongyBone->mesh;
+    const StoredSurfaces held{source.into(frame), 1, {&mesh}, {}, false};
+    return {[=, &mesh](const PlaceFile& place) {
+                MeshWriteOptions write;
+                write.frame = frame;
+                write.volume = source.volume(frame);
+                writeMesh(mesh, place(files.front()), write);
+            },
+            [=](const fs::path& folder) -> BemFileFault {
+                const std::vector<TriangleMesh> stored{readOne(folder / files.front())};
+                if (const BemFileFault moved = checkSurfaces(source, held, stored)) return moved;
+                const SurfaceFacts facts =
+                    measureSurface(stored.front(), sizeLimitsOf(Profile::Print), 1);
+                for (const Check& check : judgeSurface(facts, {})) {
+                    if (!check.breaksProfile()) continue;
+                    return source.fault(std::string(check.name) + ": " + check.finding +
+                                        " (in the file's coordinates)");
+                }
+                return std::nullopt;
+            }};
+}
+
 std::vector<BemFileRow> allRows() {
     constexpr auto kAlways = [](const Source&) { return true; };
     constexpr auto kWithHead = [](const Source& s) {
@@ -332,7 +361,25 @@ std::vector<BemFileRow> allRows() {
          [](const Source& s) { return s.options.writesBrainstorm; },
          brainstormFiles},
         {"*.stl", stlFileNames(), [](const Source& s) { return s.options.writesStl(); },
-         simNibsFiles}};
+         simNibsFiles},
+        {kSpongyBoneSurf,
+         {kSpongyBoneSurf},
+         hasSpongyBone,
+         [](const Source& s, const Files& files) { return spongyFile(s, files, s.mriFrame()); }},
+        {"spongy_bone.gii",
+         {"spongy_bone.gii"},
+         [](const Source& s) { return s.options.writesGifti && hasSpongyBone(s); },
+         [](const Source& s, const Files& files) { return spongyFile(s, files, s.options.frame); }},
+        {"spongy_bone.vtp",
+         {"spongy_bone.vtp"},
+         [](const Source& s) { return s.options.writesVtp && hasSpongyBone(s); },
+         [](const Source& s, const Files& files) { return spongyFile(s, files, s.options.frame); }},
+        {kSpongyStl,
+         {kSpongyStl},
+         [](const Source& s) { return s.options.writesStl() && hasSpongyBone(s); },
+         [](const Source& s, const Files& files) {
+             return spongyFile(s, files, CoordinateFrame::Ras);
+         }}};
     for (BemFileRow& row : pointFileRows()) rows.push_back(std::move(row));
     rows.push_back({"model.geom, model.cond",
                     {"model.geom", "model.cond"},

@@ -65,6 +65,8 @@ struct BemFileRow {
 /// room. An error of frame or unit is larger by far.
 inline constexpr double kFileRoundingMm = 1e-3;
 
+inline constexpr const char* kSpongyStl = "spongy.stl";
+
 /// By HeadSurface, as SimNIBS 3 names them.
 std::vector<std::string> stlFileNames();
 

@@ -167,6 +167,19 @@ Json skullJson(const BemModel& model) {
             {"thickenedPointMm", place(skull.thickenedMm)}};
 }
 
+Json spongyJson(const BemModel& model) {
+    if (!model.spongyBone) return nullptr;
+    const BemSpongyBone& bone = *model.spongyBone;
+    return {{"pieces", bone.pieces},
+            {"vertices", std::ssize(bone.mesh.points)},
+            {"triangles", std::ssize(bone.mesh.triangles)},
+            {"volumeMm3", number(bone.volumeMm3)},
+            {"segmentedVolumeMm3", number(bone.segmentedMm3)},
+            {"innerSkullGapMm", number(bone.innerGapMm)},
+            {"outerSkullGapMm", number(bone.outerGapMm)},
+            {"conductivity", number(kSpongyBoneConductivity)}};
+}
+
 Json tetrahedraJson(const BemModel& model) {
     if (!model.tetrahedra) return nullptr;
     const TetrahedraReport& report = model.tetrahedra->report;
@@ -260,6 +273,7 @@ Json bemModelJson(const BemModel& model) {
             {"surfaces", surfaces},
             {"gaps", gaps},
             {"skull", skullJson(model)},
+            {"spongyBone", spongyJson(model)},
             {"checks", checks},
             {"tetrahedra", tetrahedraJson(model)},
             {"landmarks", landmarksJson(model)},

@@ -435,6 +435,11 @@ BemFileKind tissueIndex(const Source& source, const Files& files) {
                  formatNumber(source.conductivity(n)) + " : " + enclosing + "\n";
         enclosing = tissue;
     }
+    if (source.model.spongyBone) {
+        lines += std::string(">Spongy : ") + kSpongyStl + " : " +
+                 formatNumber(kSpongyBoneConductivity) + " : " +
+                 std::string(tissueWithin(HeadSurface::OuterSkull, count).domain) + "\n";
+    }
     return oneFile(
         files, [=](const fs::path& path) { writeText(path, lines); },
         [=](const fs::path& path) {

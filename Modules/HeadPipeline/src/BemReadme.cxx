@@ -76,6 +76,12 @@ std::string toolboxRows(const BemModel& model, const BemFileOptions& options,
                                       : " | SimNIBS") +
                 " | scanner RAS; millimetres |\n";
     }
+    if (model.spongyBone) {
+        rows += std::string("| `spongy_bone.surf`") +
+                (options.writesStl() ? " (" + mri + "), `spongy.stl` (scanner RAS)" : "") +
+                " | spongy bone within the skull | " + (options.writesStl() ? "" : mri + "; ") +
+                "millimetres |\n";
+    }
     if (model.tetrahedra) {
         std::vector<std::string> tissues;
         for (const TetrahedraRegion& tissue : allTissues(model.meshes.size())) {

@@ -134,6 +134,7 @@ Fault faultOfInputs(const BemModelOptions& options, const BemRequest& request,
         {hasLabels && !isOne &&
              (tissues.skull.empty() || (tissues.scalp.empty() && !has("head-mask"))),
          "{labels} needs {tissue} skull=... and scalp=... as well (or {head-mask}, or {meg})"},
+        {isOne && !tissues.spongy.empty(), "{tissue} spongy=... needs a skull: not with {meg}"},
         {has("surfaces") && request.surfaces != options.surfaceCount(),
          "{surfaces} needs " + count + " files, inside out"},
         {has("sources") && (request.sources < 1 || request.sources > 2),

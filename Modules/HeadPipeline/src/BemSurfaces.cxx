@@ -18,6 +18,7 @@
 #include "adaptiso/HeadPipeline/BemChecks.h"
 #include "adaptiso/HeadPipeline/BemRules.h"
 #include "adaptiso/HeadPipeline/BemSources.h"
+#include "adaptiso/HeadPipeline/BemSpongyBone.h"
 
 namespace adaptiso {
 namespace {
@@ -372,6 +373,7 @@ void finishBemModel(std::vector<TriangleMesh> dense, BemModel& model, const BemH
     if (model.hasModel()) assessPlausibility(model, hooks);
     if (model.hasModel()) reportMoves(model);
     if (model.hasModel()) checkPial(model);
+    if (model.hasModel()) addSpongyBone(model, hooks);
     if (model.hasModel()) compareWithSegmentation(model);
     for (std::size_t n = 0; model.hasModel() && n < model.seenMm.size(); ++n) {
         model.surfaces[n].seen = seenOf(model.meshes[n], model.seenMm[n]);

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ._option_types import BemOptions
 
 PRESETS = tuple(_adaptiso.tissue_presets())
-TISSUES = ("white", "brain", "csf", "skull", "scalp")
+TISSUES = ("white", "brain", "csf", "skull", "spongy", "scalp")
 MONTAGES = tuple(_adaptiso.montage_names())
 MESHERS = ("tetgen", "gmsh")
 #: From inside out; models have the inner skull alone, or the last three to five of them.
@@ -331,7 +331,7 @@ def bem(t1: Any = None, *, brain_mask: Any = None, aseg: Any = None, lesion: Any
     tissues : str or dict, optional
         With `labels`: whose they are, by a preset of adaptiso-bem ("charm", ...), or ``{"brain": [1, 2, 3], "skull": [4], "scalp": [5]}``; CSF
         belongs to the brain, or with four layers is named apart: ``"csf": [3]``, with
-        five the white matter too: ``"white": [1]``.
+        five the white matter too: ``"white": [1]``. Spongy bone (``"spongy": [8]``) counts as skull, and `save` writes its surface.
     head_mask : image, optional
         With `labels`: what is not 0 there lies within the skin; needed where no label is the
         scalp's, as with "totalsegmentator" (its task body, on the same grid).

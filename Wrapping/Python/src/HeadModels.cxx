@@ -476,7 +476,8 @@ TissueLabels tissuesOf(const py::dict& source) {
     const auto preset = take<std::string>(source, "preset");
     if (!preset.empty()) return tissuePreset(preset);
     auto lists = take<std::map<std::string, std::vector<std::int64_t>>>(source, "tissues");
-    return {lists["brain"], lists["skull"], lists["scalp"], false, lists["csf"], lists["white"]};
+    return {lists["brain"], lists["skull"], lists["scalp"], false,
+            lists["csf"],   lists["white"], lists["spongy"]};
 }
 
 std::vector<std::pair<const char*, BemSource>> namedSources() {

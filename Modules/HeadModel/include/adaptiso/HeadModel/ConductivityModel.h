@@ -8,6 +8,9 @@
 
 namespace adaptiso {
 
+/// S/m, as SimNIBS has it [Opitz2015].
+inline constexpr double kSpongyBoneConductivity = 0.025;
+
 /// Conductivities of a head model's compartments, S/m. The defaults are MNE's (0.3, 0.006, 0.3
 /// in mne.make_bem_model; skull to brain 1 : 50). Published ratios lie between 1 : 15 and 1 : 80;
 /// 0.33, 0.0041, 0.33 (1 : 80) is the classic choice [Rush1969].

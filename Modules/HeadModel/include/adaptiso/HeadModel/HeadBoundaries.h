@@ -152,6 +152,8 @@ struct TissueLabels {
     bool othersAreBrain = false;
     std::vector<std::int64_t> csf{};    ///< within the inner skull, outside of the brain
     std::vector<std::int64_t> white{};  ///< white matter, and what counts as it; part of the brain
+    std::vector<std::int64_t>
+        spongy{};  ///< spongy bone; may be listed as skull too, and counts as it
 };
 
 /// The programs whose labels are known: "charm", "aseg", ...

@@ -12,8 +12,9 @@ namespace adaptiso {
 
 /// A segmentation as it is: its skull, and what the surfaces of a head model would enclose in it.
 struct SegmentedHead {
-    ImageGeometry grid;                 ///< the image's
-    std::vector<std::uint8_t> isSkull;  ///< of each voxel
+    ImageGeometry grid;                    ///< the image's
+    std::vector<std::uint8_t> isSkull;     ///< of each voxel
+    std::vector<std::uint8_t> isSpongy{};  ///< the same of spongy bone; empty: not told apart
     /// Volumes of inner skull, outer skull and skin by their voxels, mm3.
     std::array<double, 3> enclosedMm3{};
 };

@@ -36,6 +36,9 @@ inline constexpr const char* kFiffDenseHead = "head-dense.fif";
 inline constexpr const char* kFiffSparseHead = "head-sparse.fif";
 inline constexpr const char* kFiffForward = "lead-field-fwd.fif";
 
+/// Of spongy bone; no layer.
+inline constexpr const char* kSpongyBoneSurf = "spongy_bone.surf";
+
 /// Every name that a model's folder may hold.
 std::vector<std::string> bemFileNames();
 

@@ -166,6 +166,15 @@ struct BemLeadField {
     std::string forward{};     ///< the bytes of MNE's own file; may be empty
 };
 
+/// Spongy bone within a model's skull.
+struct BemSpongyBone {
+    TriangleMesh mesh;  ///< closed, of any number of pieces; LPS mm
+    std::int64_t pieces = 0;
+    double volumeMm3 = 0;
+    double segmentedMm3 = 0;                ///< of its labels
+    double innerGapMm = 0, outerGapMm = 0;  ///< from inner and outer skull
+};
+
 /// The layers of a model in tetrahedra.
 struct BemTetrahedra {
     std::string mesher;    ///< "tetgen" or "gmsh"
@@ -192,6 +201,7 @@ struct BemModel {
     std::vector<TriangleMesh> given;
     std::optional<SegmentedHead> segmented;  ///< until there is a model; of a skull with holes on
     std::optional<SkullComparison> skull;    ///< of a model made from a segmentation
+    std::optional<BemSpongyBone> spongyBone{};  ///< of labels that tell it apart
     std::optional<HeadShape> headShape;  ///< LPS mm; if wanted, and there is a model with a skin
     std::optional<BemTetrahedra> tetrahedra;  ///< if wanted, and there is a model
     std::optional<BemElectrodes> electrodes;  ///< if wanted, and there is a model
