@@ -242,6 +242,8 @@ class Electrodes(BemTest):
         self.fails(BAD_INPUT, r"--montage: a landmark lies \d+ mm from the skin", *labels, "--montage",
                    "10-20", "--nasion", "0,200,0", "--left-ear=-72,0,0", "--right-ear", "72,0,0", "-o",
                    "m")
+        self.fails(BAD_INPUT, r"--montage: a landmark lies [\d.]+ mm from the skin.*: is it in metres\?", *labels, "--montage", "10-20",
+                   "--nasion", "0,0.072,0", "--left-ear=-0.072,0,0", "--right-ear", "0.072,0,0", "-o", "m")
 
 
 class Sources(BemTest):

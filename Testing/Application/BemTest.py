@@ -602,7 +602,7 @@ class BadInput(BemTest):
             "--brain-mask needs --t1": ("--ct", "a.nii", "--brain-mask", "a.nii", "-o", "m"),
             "--labels needs --preset": ("--labels", "a.nii", "-o", "m"),
             "skull=... and scalp=": ("--labels", "a.nii", "--tissue", "brain=1", "-o", "m"),
-            "must be white, brain, csf, skull or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
+            "must be white, brain, csf, skull, spongy or scalp": ("--labels", "a.nii", "--tissue", "eyes=1", "-o", "m"),
             "labels or ranges": ("--labels", "a.nii", "--tissue", "brain=1,x", "-o", "m"),
             "ranges of them": ("--labels", "a.nii", "--tissue", "brain=3-1", "-o", "m"),
             "labels or ranges of": ("--labels", "a.nii", "--tissue", f"brain={-2**63}-{2**63 - 1}", "-o", "m"),

@@ -62,9 +62,13 @@ Base baseOf(const TriangleMesh& skin, const Landmarks& landmarks) {
     if (landmarks.inionMm) places.push_back(*landmarks.inionMm);
     const OntoSkin onto = projectedOntoSkin(places, skin);
     if (onto.farthestMm > kMostMm) {
+        constexpr double kMostMetres = 1;
+        const bool areMetres =
+            std::ranges::all_of(places, [](const Vec3& p) { return norm(p) < kMostMetres; });
         throw InvalidInput("a landmark lies " + shortNumber(onto.farthestMm) +
-                           " mm from the skin, must be at most 30; is it of this head, in the "
-                           "same space?");
+                           " mm from the skin, must be at most 30; " +
+                           (areMetres ? "it is less than 1 mm from the origin: is it in metres?"
+                                      : "is it of this head, in the same space?"));
     }
     Base base{onto.pointsMm[0], onto.pointsMm[1], onto.pointsMm[2], {}, {}};
     base.middle = 0.5 * (base.leftEar + base.rightEar);

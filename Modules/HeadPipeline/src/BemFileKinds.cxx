@@ -307,6 +307,11 @@ BemFileKind spongyFile(const Source& source, const Files& files, CoordinateFrame
     const TriangleMesh& mesh = source.model.spongyBone->mesh;
     const StoredSurfaces held{source.into(frame), 1, {&mesh}, {}, false};
     return {[=, &mesh](const PlaceFile& place) {
+                if (files.front() == kSpongyBoneSurf) {
+                    writeFreeSurferSurface(mesh, place(files.front()), source.model.tkRasVolume,
+                                           source.model.tkRasName);
+                    return;
+                }
                 MeshWriteOptions write;
                 write.frame = frame;
                 write.volume = source.volume(frame);

@@ -29,6 +29,7 @@ BemModel wholeModel(double movedMm, bool onGrid) {
         model.meshes.push_back(icosphere(2, middle, radius));
     }
     model.surfaces.resize(3);
+    model.spongyBone.emplace().mesh = icosphere(2, middle + Vec3{0, 0, 63}, 2);
     model.options.conductivities.skull = 0.006 + 0.0001 * movedMm;
     model.headShape = HeadShape{icosphere(2, middle, 72), icosphere(1, middle, 72)};
     BemElectrodes& electrodes = model.electrodes.emplace();
