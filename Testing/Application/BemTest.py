@@ -134,6 +134,14 @@ class Model(BemTest):
         self.fails(USAGE, r"--tissue spongy=... needs a skull: not with --meg", *labels, "--tissue", "spongy=8", "--meg", "-o", "m")
         self.fails(BAD_INPUT, r"holds no label of the tissue spongy bone", *labels, "--tissue", "spongy=8", "-o", "m")
         self.fails(BAD_INPUT, r"label 1 is named twice", *labels, "--tissue", "spongy=1", "-o", "m")
+        image = head(radii=(52, 64, 72), values=(1, 2, 3))
+        samples = bytearray(image.samples)
+        samples[samples.index(2)] = 8  # one voxel, at the outer skull
+        write_nifti(self.path("seg.nii"), Image(image.size, "B", bytes(samples), image.spacing, image.origin))
+        done = self.bem("--labels", "seg.nii", "--tissue", "brain=1", "--tissue", "skull=2", "--tissue", "spongy=8", "--tissue", "scalp=3",
+                        *QUICK, "-o", "model")
+        self.assertIn("warning: the labels' spongy bone has no piece of 50 mm3", done.stderr)
+        self.assertIsNone(self.report()["spongyBone"])
 
     def test_five_layers_are_refused_where_they_make_no_sense(self):
         labels = self.labels()

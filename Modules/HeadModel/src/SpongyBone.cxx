@@ -39,9 +39,9 @@ std::optional<FractionField> spongySolid(const SegmentedHead& head, const Triang
                 part = 0;
                 continue;
             }
-            const Vec3 place = solid.grid.toPhysical(Vec3{static_cast<double>(n % width),
-                                                          static_cast<double>(n / width % height),
-                                                          static_cast<double>(n / width / height)});
+            const std::int64_t i = n % width, j = n / width % height, k = n / (width * height);
+            const Vec3 place = solid.grid.toPhysical(
+                {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
             const double farMm =
                 std::sqrt(std::min(innerTree.closestPoint(place).squaredDistanceMm2,
                                    outerTree.closestPoint(place).squaredDistanceMm2));

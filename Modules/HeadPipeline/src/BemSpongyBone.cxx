@@ -87,7 +87,8 @@ void addSpongyBone(BemModel& model, const BemHooks& hooks) {
     });
     if (bone.mesh.triangles.empty()) {
         model.warnings.push_back(
-            {"spongy-bone-missing", "the labels' spongy bone lies nowhere " +
+            {"spongy-bone-missing", "the labels' spongy bone has no piece of " +
+                                        formatNumber(kLeastPieceMm3) + " mm3 that lies " +
                                         formatNumber(kSpongyGapMm) +
                                         " mm within the model's skull; there is no surface of it"});
         return;
