@@ -619,7 +619,8 @@ class RealHead(SharedFolderTest):
         right = {name.strip(): np.array(line.split(), float)
                  for name, line in zip(lines[labels + 1:], lines[points + 1:labels])}
         place = {name: ",".join(map(str, right[name])) for name in ("Nz", "Iz", "LPA", "RPA")}
-        self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "ch2bet.nii.gz", "--montage", "standard_1005",
+        self.make_alone()
+        self.bem("--surfaces", *(self.path(f"alone/{name}.surf") for name in NAMES), "--montage", "standard_1005",
                  f"--nasion={place['Nz']}", f"--inion={place['Iz']}", f"--left-ear={place['LPA']}",
                  f"--right-ear={place['RPA']}", "-o", "montage")
         rows = [row.split("\t") for row in (self.path("montage") / "electrodes.tsv").read_text().splitlines()[1:]]
