@@ -651,6 +651,15 @@ class RealHead(SharedFolderTest):
         self.assertIn("inner-skull-dented", codes[0])
         self.assertEqual(codes[1], {"guessed-brain"})
 
+    def test_a_label_map_as_brain_mask_is_named(self):
+        self.bem("--t1", TEMPLATES / "ch2.nii.gz", "--brain-mask", TEMPLATES / "aal.nii.gz", "--meg", "--vertices", 162, "--dry-run",
+                 "--json", "aal.json")
+        codes = [w["code"] for w in json.loads(self.path("aal.json").read_text())["warnings"]]
+        self.assertIn("looks-like-labels", codes)
+        self.make_masked()  # a stripped image of 127 grey values
+        codes = [w["code"] for w in json.loads((self.path("masked") / "report.json").read_text())["warnings"]]
+        self.assertNotIn("looks-like-labels", codes)
+
     def test_a_contrast_that_thresholds_are_not_made_for_is_a_warning(self):
         """Grey and white matter 1.8 times as far apart, as at 7 T: thresholds lose a third of the brain. 1.4 times is sound."""
         image = nibabel.load(TEMPLATES / "ch2.nii.gz")

@@ -16,6 +16,7 @@
 #include "adaptiso/Core/Text.h"
 #include "adaptiso/HeadModel/Plausibility.h"
 #include "adaptiso/HeadModel/SourceError.h"
+#include "adaptiso/Preprocessing/LabelValues.h"
 
 namespace adaptiso {
 
@@ -396,6 +397,12 @@ HeadBoundaries foundInT1(const VolumeView& t1, const BrainSources& sources,
             "inner skull");
     }
     requireBandInSight(band, isGuess, options.csfMm, raw);
+    if (const auto labels = sources.mask ? findLabelValues(*sources.mask) : std::nullopt) {
+        raw.warnings.push_back({"looks-like-labels",
+                                "the brain mask holds " + std::to_string(labels->count) +
+                                    " different whole numbers, as label maps do; all that is not 0 "
+                                    "counts as brain"});
+    }
     if (!options.innerSkullOnly) {
         raw.notes.push_back("skull band seen on " + shortNumber(100 * band.seenFraction) +
                             " % of the rays to the scalp, median thickness " +
