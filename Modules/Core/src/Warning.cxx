@@ -49,9 +49,7 @@ constexpr WarningCode kCodes[] = {
     {"landmarks-unknown", "nasion and ears are neither given nor can be guessed"},
     {"large-integers", "voxels hold integers beyond 2^53, which isovalues cannot distinguish"},
     {"lines-left-out", "lines or points beside a surface's polygons were left out", true},
-    {"looks-like-labels",
-     "an image that may hold labels was cut at an isovalue above the first, or taken for a brain "
-     "mask"},
+    {"looks-like-labels", "labels may have been cut above the first, or be a brain mask"},
     {"many-vertices", "the head model has more vertices than solvers can usually handle"},
     {"mask-covered", "all voxels of a mask lie in masks that keep them, so it has no region"},
     {"mask-empty", "a mask holds no voxel, so it has no region", true},
